@@ -15,6 +15,7 @@ module dd3_model_sheet_turn
   use dd3_model_sheet_faces, only : face_normal
   use dd3_tools_placement, only : placement_t
   use dd3_tools_turn_field, only : turn_field_t, turn_over
+  use dd3_tools_vector_tree, only : facing_t
   implicit none
   private
   public :: turn_of_sheet, turn_of_tools_ahead
@@ -90,13 +91,16 @@ contains
 
   !> Find the largest angle by which the tools that each element can meet on either face turn over
   !> its length, until they have moved on. All elements of a column have the same one.
-  pure subroutine turn_of_tools_ahead(model, state, field, ahead, turn)
+  pure subroutine turn_of_tools_ahead(model, state, field, ahead, rotation, turn)
     type(model_t), intent(in) :: model
     class(configuration_t), intent(in) :: state
     !> Of the tools, `(n_tool)`.
     type(turn_field_t), intent(in) :: field(:)
     !> Travel of the tools, mm.
     real(wp), intent(in) :: ahead
+    !> Angle by which the sheet can rotate meanwhile, rad: what of a tool has other normals counts
+    !> later.
+    real(wp), intent(in) :: rotation
     !> `(n_element)`, rad.
     real(wp), intent(out) :: turn(:)
 
@@ -113,7 +117,7 @@ contains
           if (.not. all(model%member(tool, model%face%node(:, face)))) cycle
           associate (largest => of_quad(quad%of_element(model%face%element(face))))
             call raise_turn(largest, field(tool), state%placement(tool), &
-                state%x(:, model%face%corner(:, face)), ahead*sqrt(1.0_wp + sliding**2))
+                state%x(:, model%face%corner(:, face)), ahead*sqrt(1.0_wp + sliding**2), rotation)
           end associate
         end associate
       end do
@@ -122,13 +126,16 @@ contains
   end subroutine turn_of_tools_ahead
 
   !> Raise the largest turn of an element to that of a tool within a distance.
-  pure subroutine raise_turn(largest, field, placement, x, distance)
+  pure subroutine raise_turn(largest, field, placement, x, distance, rotation)
     real(wp), intent(inout) :: largest
     type(turn_field_t), intent(in) :: field
     type(placement_t), intent(in) :: placement
     !> Corners of the face, mm, and the distance from it, mm.
     real(wp), intent(in) :: x(3, n_corner), distance
+    !> Angle from the opposite of its normal within which those of the tool count, rad.
+    real(wp), intent(in) :: rotation
 
+    type(facing_t) :: facing
     real(wp) :: corner(3, n_corner), centre(3), diagonal, length(2), frame(3, 3), reach
     integer :: i
 
@@ -139,15 +146,16 @@ contains
     diagonal = max(norm2(corner(:, 3) - corner(:, 1)), norm2(corner(:, 4) - corner(:, 2)))
     call measure(corner, length, frame)
     ! Most elements have nothing near, and no more than a neighbour: one search from the centre.
-    if (turn_over(field, centre, distance + h*diagonal, maxval(length)) <= largest) return
+    facing = facing_t(-face_normal(corner), cos(rotation))
+    if (turn_over(field, centre, distance + h*diagonal, maxval(length), facing) <= largest) return
     reach = distance + beside*diagonal
     do i = 1, n_place
       associate (place => matmul(corner, place_shape(:, i)))
         if (maxval(length) <= square*minval(length)) then
-          largest = max(largest, turn_over(field, place, reach, h*sum(length)))
+          largest = max(largest, turn_over(field, place, reach, h*sum(length), facing))
         else
-          largest = max(largest, turn_over(field, place, reach, minval(length)), &
-              turn_over(field, place, reach, maxval(length), frame))
+          largest = max(largest, turn_over(field, place, reach, minval(length), facing), &
+              turn_over(field, place, reach, maxval(length), facing, frame))
         end if
       end associate
     end do

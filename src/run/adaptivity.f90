@@ -1,12 +1,14 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Adaptive refinement of the sheet in a run: which elements are divided and when.
 !>
-!> An element is divided before it comes to lie on a radius of a tool over whose length the tool turns
-!> by more than the angle of the input, as the exact surfaces of the tools tell. As soon as one would
-!> meet such a radius in the next part of the travel, all that would in a longer part are divided, so
-!> that the mesh changes a few times only. Where the sheet has turned too much all the same, as in
-!> walls and where it bends freely, it is divided there; an increment in which it turns by much more
-!> is made again on the finer mesh.
+!> An element is divided before it comes to lie on a radius of a tool that turns by more than the angle
+!> of the input over the length of the element, as the exact surfaces of the tools tell: later the
+!> forces would change, as the length of a chord is not that of its arc. What of a tool the sheet can
+!> meet soon is near and has nearly the direction of the sheet, which must rotate to lie on the rest.
+!> As soon as an element would meet such a radius in the next part of the travel, all that would in a
+!> longer part are divided, so that the mesh changes a few times only. Where the sheet turns by more
+!> than the angle without a tool, as where it bends freely, it is divided too; an increment in which
+!> it does is made again on the finer mesh.
 module dd3_run_adaptivity
   use dd3_base_error, only : error_list_t, error_t, fatal_error
   use dd3_base_kinds, only : pi, wp
@@ -31,10 +33,10 @@ module dd3_run_adaptivity
   public :: adaptivity_t, new_adaptivity
 
   !> Travel of the tools within which a radius makes elements be divided, and that within which all
-  !> are divided then, over the mean length of the undivided elements.
-  real(wp), parameter :: near = 0.25_wp, ahead = 1.0_wp
-  !> Turn of the sheet over an element, over the largest, at which an increment is made again.
-  real(wp), parameter :: late = 1.5_wp
+  !> are divided then, over the mean length of the undivided elements; rotation of the sheet
+  !> meanwhile, over the angle.
+  real(wp), parameter :: near = 0.1_wp, ahead = 0.4_wp
+  real(wp), parameter :: near_rotation = 1.0_wp, rotation_ahead = 2.0_wp
   !> Largest number of increments made again one after another.
   integer, parameter :: most_returns = 3
 
@@ -126,24 +128,27 @@ contains
     type(state_t), intent(in) :: state
     logical, allocatable, intent(out) :: marked(:)
 
-    logical :: bent(model%n_element)
+    logical :: free(model%n_element)
     real(wp) :: turn(model%n_element)
 
     allocate (marked(model%n_element), source=.false.)
     if (.not. may_refine(self, model, state)) return
     if (allocated(self%waiting)) call move_alloc(self%waiting, marked)
-    call turn_of_sheet(model, state%x, turn)
-    bent = turn > self%spec%angle .and. divisible(self, model, state)
-    call turn_of_tools_ahead(model, state, self%field, near*self%length, turn)
-    if (any(turn > self%spec%angle .and. divisible(self, model, state)) .or. any(bent) &
-        .or. any(marked)) then
-      call turn_of_tools_ahead(model, state, self%field, ahead*self%length, turn)
-      marked = marked .or. bent .or. (turn > self%spec%angle .and. divisible(self, model, state))
-    end if
+    free = divisible(self, model, state)
+    associate (angle => self%spec%angle)
+      call turn_of_sheet(model, state%x, turn)
+      marked = marked .or. (turn > angle .and. free)
+      call turn_of_tools_ahead(model, state, self%field, near*self%length, near_rotation*angle, &
+          turn)
+      if (.not. any(marked .or. (turn > angle .and. free))) return
+      call turn_of_tools_ahead(model, state, self%field, ahead*self%length, rotation_ahead*angle, &
+          turn)
+      marked = marked .or. (turn > angle .and. free)
+    end associate
   end subroutine find_marks
 
-  !> Judge a converged increment: too late if the sheet turns by far too much over an element that
-  !> may be divided.
+  !> Judge a converged increment: too late if the sheet turns by more than the angle over an element
+  !> that may be divided.
   subroutine judge(self, model, trial, too_late)
     class(adaptivity_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -159,10 +164,10 @@ contains
       return
     end if
     call turn_of_sheet(model, trial%x, turn)
-    marked = turn > late*self%spec%angle .and. divisible(self, model, trial)
+    marked = turn > self%spec%angle .and. divisible(self, model, trial)
     too_late = any(marked)
     if (too_late) then
-      self%waiting = marked .or. (turn > self%spec%angle .and. divisible(self, model, trial))
+      self%waiting = marked
       self%returns = self%returns + 1
       self%total_returns = self%total_returns + 1
     else

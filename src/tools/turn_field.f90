@@ -19,7 +19,7 @@ module dd3_tools_turn_field
   use dd3_base_kinds, only : i8, wp
   use dd3_tools_surface, only : surface_t
   use dd3_tools_surface_samples, only : close_spacing, new_surface_samples, surface_samples_t
-  use dd3_tools_vector_tree, only : largest_within, new_vector_tree, vector_tree_t
+  use dd3_tools_vector_tree, only : facing_t, largest_within, new_vector_tree, vector_tree_t
   implicit none
   private
   public :: turn_field_t, new_turn_field, largest_turn, turn_over
@@ -70,7 +70,8 @@ contains
       allocate (turn(3, sample%n))
       call find_turns(sample, length(l), turn)
       associate (turned => pack([(i, i=1, sample%n)], norm2(turn, dim=1) > resolution))
-        call new_vector_tree(self%level(l), sample%x(:, turned), turn(:, turned))
+        call new_vector_tree(self%level(l), sample%x(:, turned), turn(:, turned), &
+            sample%normal(:, turned))
       end associate
       deallocate (turn)
     end do
@@ -216,12 +217,14 @@ contains
 
   !> Return the largest turn over any length: linear between those of the field, as on an arc and
   !> at a kink, and the one over the shortest or the longest length beyond them, rad.
-  pure real(wp) function turn_over(self, x, reach, length, frame) result(turn)
+  pure real(wp) function turn_over(self, x, reach, length, facing, frame) result(turn)
     type(turn_field_t), intent(in) :: self
     !> As for `largest_turn`.
     real(wp), intent(in) :: x(3), reach
     !> mm.
     real(wp), intent(in) :: length
+    !> Normals of the points that count; all without.
+    type(facing_t), intent(in), optional :: facing
     !> Vectors g_1 and g_2 in the plane of an element, and its unit normal: a turn along e in this
     !> plane counts times min(1, 1/max(|e.g_1|, |e.g_2|)).
     real(wp), intent(in), optional :: frame(3, 3)
@@ -230,12 +233,12 @@ contains
     integer :: l
 
     l = count(self%length <= (1.0_wp + round_off)*length)
-    shorter = largest_within(self%level(max(l, 1)), x, reach, resolution, frame)
+    shorter = largest_within(self%level(max(l, 1)), x, reach, resolution, facing, frame)
     turn = shorter
     if (l == 0 .or. l == size(self%length)) return
     associate (from => self%length(l), to => self%length(l + 1))
       if (length - from <= round_off*length) return
-      longer = largest_within(self%level(l + 1), x, reach, resolution, frame)
+      longer = largest_within(self%level(l + 1), x, reach, resolution, facing, frame)
       turn = shorter + (length - from)/(to - from)*(longer - shorter)
     end associate
   end function turn_over

@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Points with a vector each, and the largest length of a vector within a distance of a place. The
+!> Points of a surface with a vector each, and the largest length of a vector within a distance of a
+!> place. The
 !> points are sorted along the Z-order curve (Morton 1966); blocks of them are the leaves of a
 !> balanced tree of boxes with the largest length below each node, so that a search leaves out all
 !> that is too far or too small.
@@ -9,7 +10,7 @@ module dd3_tools_vector_tree
   use dd3_tools_box_tree, only : box_distance
   implicit none
   private
-  public :: vector_tree_t, new_vector_tree, largest_within
+  public :: facing_t, vector_tree_t, new_vector_tree, largest_within
 
   !> Points in a leaf.
   integer, parameter :: leaf_size = 8
@@ -20,11 +21,20 @@ module dd3_tools_vector_tree
   !> Largest number of nodes on the stack of a search.
   integer, parameter :: most_levels = 40
 
+  !> Directions of normals: all within an angle of one.
+  type :: facing_t
+    real(wp) :: normal(3) = 0.0_wp
+    !> Cosine of the angle.
+    real(wp) :: least_cosine = -1.0_wp
+  end type facing_t
+
   !> The tree: node i has the halves 2 i and 2 i + 1; the last `n_leaf` nodes are the leaves.
   type :: vector_tree_t
     integer :: n = 0, n_leaf = 0
     !> Positions in the order of the curve, mm, and vectors, `(3, n)`.
     real(wp), allocatable :: x(:, :), vector(:, :)
+    !> Unit normals of the surface there, `(3, n)`.
+    real(wp), allocatable :: normal(:, :)
     !> Lower and upper corner of the box of each node, `(3, 2, 2*n_leaf - 1)`, mm, and the largest
     !> length of a vector in it.
     real(wp), allocatable :: box(:, :, :), largest(:)
@@ -33,10 +43,12 @@ module dd3_tools_vector_tree
 contains
 
   !> Make the tree.
-  subroutine new_vector_tree(self, x, vector)
+  subroutine new_vector_tree(self, x, vector, normal)
     type(vector_tree_t), intent(out) :: self
     !> `(3, n)`, positions in mm.
     real(wp), intent(in) :: x(:, :), vector(:, :)
+    !> Unit normals of the surface, `(3, n)`.
+    real(wp), intent(in) :: normal(:, :)
 
     integer, allocatable :: order(:)
     integer :: i, first, last
@@ -46,6 +58,7 @@ contains
     order = ascending(places_on_curve(x))
     self%x = x(:, order)
     self%vector = vector(:, order)
+    self%normal = normal(:, order)
     self%n_leaf = 1
     do while (self%n_leaf*leaf_size < self%n)
       self%n_leaf = 2*self%n_leaf
@@ -102,13 +115,15 @@ contains
 
   !> Return the largest length of the vectors within a distance of a place, or that of the lengths
   !> multiplied by a factor of their directions.
-  pure real(wp) function largest_within(self, x, distance, resolution, frame) result(largest)
+  pure real(wp) function largest_within(self, x, distance, resolution, facing, frame) result(largest)
     type(vector_tree_t), intent(in) :: self
     real(wp), intent(in) :: x(3)
     !> mm.
     real(wp), intent(in) :: distance
     !> Difference from the largest length that may be left out.
     real(wp), intent(in) :: resolution
+    !> Normals of the points that count; all without.
+    type(facing_t), intent(in), optional :: facing
     !> As for `factor_along`.
     real(wp), intent(in), optional :: frame(3, 3)
 
@@ -128,6 +143,9 @@ contains
         call leaf_range(self, node, first, last)
         do i = first, last
           if (sum((self%x(:, i) - x)**2) > distance**2) cycle
+          if (present(facing)) then
+            if (dot_product(self%normal(:, i), facing%normal) < facing%least_cosine) cycle
+          end if
           length = norm2(self%vector(:, i))
           if (present(frame)) length = length*factor_along(self%vector(:, i), frame)
           largest = max(largest, length)
