@@ -202,7 +202,7 @@ contains
       call fatal_error(error, "the sheet cannot be refined: it has no layers", "E207")
       return
     end if
-    call mark_balanced(sheet%mesh, grid, self%spec%levels, .true., marked)
+    call mark_balanced(sheet%mesh, grid, self%spec%levels, marked)
     if (.not. any(marked)) return
     call refine_sheet(sheet, grid, model%element, marked, refined, origin)
     refined%mesh%mesh_number = model%mesh_number + 1

@@ -14,18 +14,14 @@ module dd3_sheet_marks
 
 contains
 
-  !> Complete the marks of elements that are asked to be divided: all of a quadrilateral, a ring
-  !> around them if asked for, and what the balance of the levels needs. Those of the highest level
-  !> lose their marks.
-  pure subroutine mark_balanced(mesh, grid, most_level, buffer, marked)
+  !> Complete the marks of elements that are asked to be divided: all of a quadrilateral, and what the
+  !> balance of the levels needs. Those of the highest level lose their marks.
+  pure subroutine mark_balanced(mesh, grid, most_level, marked)
     type(mesh_t), intent(in) :: mesh
     !> Grid of the mesh.
     type(grid_t), intent(in) :: grid
     !> Highest level.
     integer, intent(in) :: most_level
-    !> Whether the neighbours of what is asked for, over edges and corners and of no higher level,
-    !> are divided too.
-    logical, intent(in) :: buffer
     !> A mark on any element of a quadrilateral counts, `(n_element)`.
     logical, intent(inout) :: marked(:)
 
@@ -34,7 +30,6 @@ contains
 
     level = quad_levels(mesh, grid)
     quad = marked_quads(grid, marked) .and. level < most_level
-    if (buffer) call add_ring(grid, level, quad)
     call balance(grid, level, quad)
     do q = 1, grid%n_quad
       marked(grid%element(:, q)) = quad(q)
@@ -64,29 +59,6 @@ contains
       quad(q) = any(marked(grid%element(:, q)))
     end do
   end function marked_quads
-
-  !> Mark the neighbours of no higher level.
-  pure subroutine add_ring(grid, level, marked)
-    type(grid_t), intent(in) :: grid
-    !> `(n_quad)`.
-    integer, intent(in) :: level(:)
-    logical, intent(inout) :: marked(:)
-
-    logical :: asked(size(marked))
-    integer :: i, k, q
-
-    asked = marked
-    do q = 1, grid%n_quad
-      if (.not. asked(q)) cycle
-      do i = 1, 4
-        associate (c => grid%corner(i, q))
-          do k = grid%first(c), grid%first(c + 1) - 1
-            if (level(grid%quad_at(k)) <= level(q)) marked(grid%quad_at(k)) = .true.
-          end do
-        end associate
-      end do
-    end do
-  end subroutine add_ring
 
   !> Mark the neighbours of a lower level, and theirs in turn.
   pure subroutine balance(grid, level, marked)
