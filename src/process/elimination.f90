@@ -85,11 +85,16 @@ contains
     do k = 1, n_layers
       layer = chosen
       do e = 1, model%n_element
-        associate (nodes => model%connectivity(:, e))
+        associate (nodes => model%coupling(:, e))
           if (any(chosen(nodes))) layer(nodes) = .true.
         end associate
       end do
       chosen = layer
+    end do
+    ! A bound node moves with its parents, and all elements at it are those of the region.
+    do k = 1, model%n_bound
+      chosen(model%bound(1, k)) = any(chosen(model%bound_point(k)%node( &
+          :model%bound_point(k)%n_node)))
     end do
     if (real(count(chosen), wp) > largest_part*real(model%n_node, wp)) chosen = .false.
   end subroutine find_worst

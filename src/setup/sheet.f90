@@ -8,7 +8,9 @@ module dd3_setup_sheet
   use dd3_mesh_build, only : new_mesh
   use dd3_mesh_mesh, only : mesh_t
   use dd3_model_model, only : model_t
+  use dd3_element_table, only : element_t
   use dd3_setup_element, only : set_element_of_mesh
+  use dd3_sheet_grid, only : grid_t, new_grid
   use dd3_sheet_sheet, only : new_flat_sheet, sheet_t
   use dd3_sheet_trim, only : trim_sheet
   implicit none
@@ -40,7 +42,43 @@ contains
     do i = 1, size(case%trim)
       if (errors%count == 0) call trim_sheet(sheet, case%trim(i), model%element, errors)
     end do
+    if (errors%count == 0) call check_refinement(sheet%mesh, case, model%element, errors)
   end subroutine new_sheet
+
+  !> Check that elements can be divided, and that nothing asks for an equation at a bound node.
+  subroutine check_refinement(mesh, case, element, errors)
+    type(mesh_t), intent(in) :: mesh
+    type(case_t), intent(in) :: case
+    type(element_t), intent(in) :: element
+    !> Errors found are added.
+    type(error_list_t), intent(inout) :: errors
+
+    type(grid_t) :: grid
+    logical :: regular, mixed
+    integer :: i
+
+    mixed = any([(case%phase(i)%contact%mixed, i=1, size(case%phase))])
+    if (case%adaptive%levels > 0) then
+      if (element%n_node /= 8) then
+        call errors%push_input(case%adaptive%at, "elements "//trim(element%name)//" cannot be "// &
+            "divided", "elements with eight nodes, hex8 or solid_shell, or adaptive = 0", &
+            code="E148")
+        return
+      end if
+      call new_grid(grid, mesh, regular)
+      if (.not. regular) call errors%push_input(case%adaptive%at, "elements of a sheet whose "// &
+          "columns have different numbers of layers cannot be divided", &
+          "the same number of layers everywhere, or adaptive = 0", code="E148")
+      if (mixed) call errors%push_input(case%adaptive%at, "elements cannot be divided in the "// &
+          "mixed formulation of the contact: it has an equation at each node", &
+          "formulation = compliant, or adaptive = 0", code="E148")
+    else if (allocated(mesh%bound) .and. mixed) then
+      i = findloc([(case%phase(i)%contact%mixed, i=1, size(case%phase))], .true., dim=1)
+      call errors%push_input(case%phase(i)%source%opened, "the sheet has nodes in the middle of "// &
+          "edges of larger elements, and the mixed formulation of the contact has an equation "// &
+          "at each node", "formulation = compliant", code="E148")
+    end if
+  end subroutine check_refinement
 
   !> Find the materials of the sheet of another run among those of the case, by their names; they
   !> must have the same laws.

@@ -30,7 +30,7 @@ FILES = ("process/newton", "process/norm", "process/equilibrium", "process/tool_
          "model/terms/drawbead", "model/terms/floating", "model/terms/viscous", "settings/accuracy", "setup/phases",
          "contact/operator", "system/compliant_contact", "system/mixed_contact")
 DECLARATION = re.compile(r"^  (real\(wp\)|integer), parameter :: ([^&\n]*)\n", re.MULTILINE)
-FIXED = {"unknown", "n_kept", "chunk"}  # codes, sizes of arrays
+FIXED = {"unknown", "n_kept", "chunk", "status_gap", "status_stick", "status_slip"}  # codes, sizes of arrays
 DRAW_BENDING = ROOT / "input_files" / "draw_bending" / "draw_bending.dat"
 UNLOAD = "*PHASE springback\n  unload = on\n"
 TIP = "*SET tip\n  near = 175 0 0\n*HISTORY tip\n  set = tip\n  quantities = displacement\n"
