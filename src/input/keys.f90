@@ -94,7 +94,7 @@ contains
           upper=4.0_wp), &
       row("adaptive_angle", kind_real, "degrees", "15", "angle by which the sheet may turn over "// &
           "an element that may be divided", lower=1.0_wp, upper=60.0_wp), &
-      row("adaptive_size", kind_real, "mm", "0", "length below which no element is divided", &
+      row("adaptive_size", kind_real, "mm", "0", "least length of an element that comes from a division", &
           lower=zero)]
   end function adaptive_keys
 

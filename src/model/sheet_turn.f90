@@ -22,15 +22,10 @@ module dd3_model_sheet_turn
 
   !> Sliding c over the travel of the tools.
   real(wp), parameter :: sliding = 0.5_wp
-  !> Places of an element from which tools are looked for: fractions of its corners at the centre,
-  !> the corners, and the middles of the edges, and their number.
-  integer, parameter :: n_place = 9
-  real(wp), parameter :: h = 0.5_wp, q = 0.25_wp, o = 0.0_wp, w = 1.0_wp
-  real(wp), parameter :: place_shape(n_corner, n_place) = reshape([q, q, q, q, w, o, o, o, &
-      o, w, o, o, o, o, w, o, o, o, o, w, h, h, o, o, o, h, h, o, o, o, h, h, h, o, o, h], &
-      [n_corner, n_place])
-  !> Largest distance of a point of an element from the nearest of the places, in diagonals.
-  real(wp), parameter :: beside = 0.25_wp
+  !> Places of an element from which tools are looked for: a grid with so many parts of an edge, and
+  !> the largest distance of a point of the element from the nearest of them, in diagonals.
+  integer, parameter :: n_part = 4
+  real(wp), parameter :: beside = 0.5_wp/real(n_part, wp)
   !> Ratio of the edges up to which both directions have one length.
   real(wp), parameter :: square = 1.1_wp
 
@@ -54,7 +49,7 @@ contains
     allocate (normal(3, quad%n), of_quad(quad%n))
     do k = 1, quad%n
       associate (bottom => quad%corner(:, k))
-        normal(:, k) = face_normal(h*(x(:, bottom) + x(:, mesh%column(2, bottom))))
+        normal(:, k) = face_normal(0.5_wp*(x(:, bottom) + x(:, mesh%column(2, bottom))))
       end associate
     end do
     do k = 1, quad%n
@@ -137,29 +132,42 @@ contains
 
     type(facing_t) :: facing
     real(wp) :: corner(3, n_corner), centre(3), diagonal, length(2), frame(3, 3), reach
-    integer :: i
+    integer :: i, j
 
     do i = 1, n_corner
       corner(:, i) = placement%to_tool(x(:, i))
     end do
-    centre = matmul(corner, place_shape(:, 1))
+    centre = 0.25_wp*sum(corner, dim=2)
     diagonal = max(norm2(corner(:, 3) - corner(:, 1)), norm2(corner(:, 4) - corner(:, 2)))
     call measure(corner, length, frame)
     ! Most elements have nothing near, and no more than a neighbour: one search from the centre.
     facing = facing_t(-face_normal(corner), cos(rotation))
-    if (turn_over(field, centre, distance + h*diagonal, maxval(length), facing) <= largest) return
+    if (turn_over(field, centre, distance + 0.5_wp*diagonal, maxval(length), facing) <= largest) return
     reach = distance + beside*diagonal
-    do i = 1, n_place
-      associate (place => matmul(corner, place_shape(:, i)))
-        if (maxval(length) <= square*minval(length)) then
-          largest = max(largest, turn_over(field, place, reach, h*sum(length), facing))
-        else
-          largest = max(largest, turn_over(field, place, reach, minval(length), facing), &
-              turn_over(field, place, reach, maxval(length), facing, frame))
-        end if
-      end associate
+    do j = 0, n_part
+      do i = 0, n_part
+        associate (place => matmul(corner, shape_at(real([i, j], wp)/real(n_part, wp))))
+          if (maxval(length) <= square*minval(length)) then
+            largest = max(largest, turn_over(field, place, reach, 0.5_wp*sum(length), facing))
+          else
+            largest = max(largest, turn_over(field, place, reach, minval(length), facing), &
+                turn_over(field, place, reach, maxval(length), facing, frame))
+          end if
+        end associate
+      end do
     end do
   end subroutine raise_turn
+
+  !> Return the bilinear shape functions of the corners of a face.
+  pure function shape_at(place) result(shape)
+    !> 0 to 1.
+    real(wp), intent(in) :: place(2)
+    real(wp) :: shape(n_corner)
+
+    associate (u => place(1), v => place(2))
+      shape = [(1.0_wp - u)*(1.0_wp - v), u*(1.0_wp - v), u*v, (1.0_wp - u)*v]
+    end associate
+  end function shape_at
 
   !> Measure the mean edges of a face.
   pure subroutine measure(corner, length, frame)
@@ -173,8 +181,8 @@ contains
 
     real(wp) :: edge(3, 2), normal(3), area
 
-    edge(:, 1) = h*(corner(:, 2) - corner(:, 1) + corner(:, 3) - corner(:, 4))
-    edge(:, 2) = h*(corner(:, 4) - corner(:, 1) + corner(:, 3) - corner(:, 2))
+    edge(:, 1) = 0.5_wp*(corner(:, 2) - corner(:, 1) + corner(:, 3) - corner(:, 4))
+    edge(:, 2) = 0.5_wp*(corner(:, 4) - corner(:, 1) + corner(:, 3) - corner(:, 2))
     length = norm2(edge, dim=1)
     normal = cross(edge(:, 1), edge(:, 2))
     area = max(norm2(normal), tiny(1.0_wp))

@@ -37,6 +37,8 @@ module dd3_run_adaptivity
   !> meanwhile, over the angle.
   real(wp), parameter :: near = 0.1_wp, ahead = 0.4_wp
   real(wp), parameter :: near_rotation = 1.0_wp, rotation_ahead = 2.0_wp
+  !> Relative difference of lengths that are equal.
+  real(wp), parameter :: round_off = 1.0e-6_wp
   !> Largest number of increments made again one after another.
   integer, parameter :: most_returns = 3
 
@@ -50,8 +52,8 @@ module dd3_run_adaptivity
     real(wp) :: length = 0.0_wp
     !> Elements to be divided before the next increment, `(n_element)`; not allocated without one.
     logical, allocatable :: waiting(:)
-    !> Increments made again since the last one that was accepted, and in the run.
-    integer :: returns = 0, total_returns = 0
+    !> Increments made again since the last one that was accepted.
+    integer :: returns = 0
   contains
     procedure :: judge
     procedure :: find_marks
@@ -66,15 +68,16 @@ contains
     type(model_t), intent(in) :: model
     type(adaptive_spec_t), intent(in) :: spec
 
-    real(wp) :: length(model%n_element)
+    real(wp) :: length(model%n_element), weight(model%n_element)
     integer :: l, tool
 
     self%spec = spec
     self%spec%angle = spec%angle*pi/180.0_wp
     if (spec%levels == 0) return
     length = element_lengths(model, model%x0)
-    if (allocated(model%level)) length = length*2.0_wp**model%level
-    self%length = sum(length)/real(size(length), wp)
+    weight = 1.0_wp
+    if (allocated(model%level)) weight = 0.25_wp**model%level
+    self%length = sum(length*sqrt(weight))/sum(weight)
     allocate (self%field(model%n_tool))
     do tool = 1, model%n_tool
       call new_turn_field(self%field(tool), model%tool(tool)%surface, &
@@ -109,14 +112,14 @@ contains
         any(model%phase(state%phase)%withdrawn))
   end function may_refine
 
-  !> Return which elements may be divided.
+  !> Return which elements may be divided: their parts are not shorter than the least length.
   pure function divisible(self, model, state)
     type(adaptivity_t), intent(in) :: self
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     logical :: divisible(model%n_element)
 
-    divisible = element_lengths(model, state%x) > self%spec%size
+    divisible = 0.5_wp*element_lengths(model, state%x) >= (1.0_wp - round_off)*self%spec%size
     if (allocated(model%level)) divisible = divisible .and. model%level < self%spec%levels
   end function divisible
 
@@ -169,7 +172,6 @@ contains
     if (too_late) then
       self%waiting = marked
       self%returns = self%returns + 1
-      self%total_returns = self%total_returns + 1
     else
       self%returns = 0
     end if

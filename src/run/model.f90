@@ -237,8 +237,10 @@ contains
     type(profile_t) :: profile
     logical, allocatable :: marked(:)
     integer :: level, before
+    logical :: again
     real(wp) :: imbalance
 
+    again = run%adaptivity%returns > 0
     do level = 1, max(1, run%adaptivity%spec%levels)
       call run%adaptivity%find_marks(model, run%committed, marked)
       if (.not. any(marked)) return
@@ -255,9 +257,10 @@ contains
       call take_up(model, run%stepper%system, run%committed, imbalance, error)
       if (allocated(error)) return
       run%trial = run%committed
-      call log%note("refined after increment "//to_text(run%committed%increment)//": "// &
-          to_text(before)//" to "//to_text(model%n_element)//" elements; forces out of balance "// &
-          to_text(100.0_wp*imbalance, 2)//" % of the internal forces")
+      call log%note("refined after increment "//to_text(run%committed%increment)// &
+          trim(merge(", before one that is made again", "                              ", again))// &
+          ": "//to_text(before)//" to "//to_text(model%n_element)//" elements; forces out of "// &
+          "balance "//to_text(100.0_wp*imbalance, 2)//" % of the internal forces")
     end do
   end subroutine adapt
 
