@@ -258,7 +258,7 @@ contains
       if (allocated(error)) return
       run%trial = run%committed
       call log%note("refined after increment "//to_text(run%committed%increment)// &
-          trim(merge(", before one that is made again", "                              ", again))// &
+          trim(merge(", before one that is made again", repeat(" ", 31), again))// &
           ": "//to_text(before)//" to "//to_text(model%n_element)//" elements; forces out of "// &
           "balance "//to_text(100.0_wp*imbalance, 2)//" % of the internal forces")
     end do
