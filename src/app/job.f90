@@ -33,6 +33,7 @@ module dd3_app_job
   use dd3_setup_axes, only : normal_report
   use dd3_setup_element, only : default_report
   use dd3_setup_model, only : new_model
+  use dd3_setup_restart_sheet, only : take_restart_sheet
   use dd3_setup_sheet_file, only : read_sheet
   use dd3_setup_tool_report, only : tool_report
   use dd3_sheet_sheet, only : sheet_t
@@ -113,7 +114,8 @@ contains
     type(run_start_t), intent(out) :: start
     type(options_t), intent(in) :: options
     type(case_t), intent(in) :: case
-    type(model_t), intent(in) :: model
+    !> Built anew if the sheet of the restart file has been refined.
+    type(model_t), intent(inout) :: model
     type(sheet_t), intent(in) :: sheet
     !> Set if the restart file cannot be used.
     type(error_t), allocatable, intent(out) :: error
@@ -131,15 +133,17 @@ contains
     else
       start%restart = options%restart
       start%source = folder_of(options%restart)
-      call read_restart(options%restart, model, start%state, error)
+      call take_restart_sheet(options%restart, case, model, error)
+      if (.not. allocated(error)) call read_restart(options%restart, model, start%state, error)
     end if
-    if (.not. allocated(error)) call check_ranks(case, error)
+    if (.not. allocated(error)) call check_ranks(case, model, error)
     call share_error(error)
   end subroutine set_start
 
   !> Check that several ranks can run the job.
-  subroutine check_ranks(case, error)
+  subroutine check_ranks(case, model, error)
     type(case_t), intent(in) :: case
+    type(model_t), intent(in) :: model
     type(error_t), allocatable, intent(out) :: error
 
     character(len=16), allocatable :: expected(:)
@@ -152,6 +156,12 @@ contains
     else if (all(expected /= case%solver%method)) then
       call fatal_error(error, "method = "//case%solver%method//" of *SOLVER needs one process, "// &
           "got "//to_text(n_ranks())//"; expected one of: "//join(expected, " "), "E205")
+    else if (case%adaptive%levels > 0) then
+      call fatal_error(error, "adaptive = "//to_text(case%adaptive%levels)//" needs one process, "// &
+          "got "//to_text(n_ranks())//"; expected adaptive = 0, or one process", "E205")
+    else if (model%n_bound > 0) then
+      call fatal_error(error, "the sheet has elements of different sizes, which "// &
+          "need one process, got "//to_text(n_ranks()), "E205")
     end if
   end subroutine check_ranks
 

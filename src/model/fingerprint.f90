@@ -10,7 +10,7 @@ module dd3_model_fingerprint
   use dd3_model_terms_drawbead, only : drawbead_t
   implicit none
   private
-  public :: fingerprint_t, model_fingerprint, changed_parts, tool_digest
+  public :: fingerprint_t, model_fingerprint, changed_parts, sheet_digests, tool_digest
 
   !> Check sum of one part of a model.
   type :: fingerprint_t
@@ -44,6 +44,9 @@ contains
     end do
     do i = 1, model%n_tool
       call add(fingerprint, "tool '"//model%tool(i)%name//"'", model%tool_digest(i))
+    end do
+    do i = 1, n_first_set(model)
+      call add(fingerprint, "set '"//model%set(i)%name//"'", model%first_digest(1 + i))
     end do
     do i = 1, size(model%drawbead)
       call add(fingerprint, "draw-bead '"//model%drawbead(i)%name//"'", &
@@ -100,7 +103,33 @@ contains
     refers_to_mesh = part /= mesh_part .and. index(part, "material ") /= 1
   end function refers_to_mesh
 
-  !> Return the check sum of nodes, elements, materials of the elements and material axes.
+  !> Return the number of node sets whose nodes before the first refinement must be the same. A
+  !> restart does not search their nodes anew on the refined sheet.
+  pure integer function n_first_set(model)
+    type(model_t), intent(in) :: model
+
+    n_first_set = 0
+    if (allocated(model%first_digest)) n_first_set = size(model%first_digest) - 1
+  end function n_first_set
+
+  !> Return the check sums of the mesh and of the node sets, `(1 + n_set)`.
+  function sheet_digests(model) result(value)
+    type(model_t), intent(in) :: model
+    integer, allocatable :: value(:)
+
+    type(digest_t) :: digest
+    integer :: i
+
+    value = [mesh_digest(model)]
+    do i = 1, size(model%set)
+      digest = digest_t()
+      call digest%add(model%set(i)%node)
+      value = [value, digest%value()]
+    end do
+  end function sheet_digests
+
+  !> Return the check sum of nodes, elements, materials of the elements and material axes; of a
+  !> refined sheet also that of the mesh before.
   integer function mesh_digest(model)
     type(model_t), intent(in) :: model
 
@@ -112,6 +141,7 @@ contains
     call digest%add(reshape(model%connectivity, [size(model%connectivity)]))
     call digest%add(model%material_of)
     call digest%add(reshape(model%axes, [size(model%axes)]))
+    if (allocated(model%first_digest)) call digest%add(model%first_digest(:1))
     mesh_digest = digest%value()
   end function mesh_digest
 

@@ -40,6 +40,11 @@ module dd3_model_model
     type(phase_t), allocatable :: phase(:)
     !> Node sets recorded in history.csv.
     type(history_set_t), allocatable :: history(:)
+    !> Of the sheet on which the run has begun, before elements were divided in it: mean edge of its
+    !> undivided elements, mm, and check sums of its mesh and of its node sets, `(1 + n_set)`. These
+    !> are allocated with the first refinement.
+    real(wp) :: undivided_length = 0.0_wp
+    integer, allocatable :: first_digest(:)
     !> What is written, and when.
     type(output_spec_t) :: output
   contains

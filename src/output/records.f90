@@ -31,6 +31,7 @@ module dd3_output_records
     procedure :: add_attempt
     procedure :: write_increment
     procedure :: write_phase_end
+    procedure :: keep_state
     procedure :: close => records_close
   end type records_t
 
@@ -189,6 +190,19 @@ contains
     if (self%ended) self%restart_increment = -1
     if (.not. allocated(error)) call save(self, model, state, error)
   end subroutine write_phase_end
+
+  !> Write the restart file of a state that is about to change without an increment: a run that
+  !> stops before the next one is accepted continues from here.
+  subroutine keep_state(self, model, state, error)
+    class(records_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Only read, but handed to a visitor.
+    type(state_t), intent(inout) :: state
+    !> Set if the file cannot be written.
+    type(error_t), allocatable, intent(out) :: error
+
+    call save(self, model, state, error)
+  end subroutine keep_state
 
   !> Write the fields of a state that a restart keeps.
   subroutine write_fields(self, model, state, error)

@@ -11,7 +11,7 @@ module dd3_output_restart
   use dd3_base_text, only : join, newline
   use dd3_base_version, only : program_version
   use dd3_model_fingerprint, only : fingerprint_t, model_fingerprint
-  use dd3_model_model, only : model_t
+  use dd3_model_model, only : model_t, node_set_t
   use dd3_model_part, only : part_t
   use dd3_model_state, only : state_t
   use dd3_model_state_visitor, only : state_visitor_t
@@ -166,11 +166,11 @@ contains
     logical, intent(in) :: ended
     type(writer_t), intent(inout) :: writer
 
-    integer :: sizes(n_sizes), i
+    integer :: sizes(n_sizes)
     real(wp) :: thickness(1)
     real(wp), allocatable :: x0(:, :)
-    integer, allocatable :: connectivity(:, :), material_of(:), digest(:), n_member(:), member(:)
-    character(len=:), allocatable :: materials, sets
+    integer, allocatable :: connectivity(:, :), material_of(:), digest(:)
+    character(len=:), allocatable :: materials
 
     sizes = [model%n_node, model%n_element, model%element%n_node, model%element%n_point, &
         model%n_internal, model%element%n_thickness_point, merge(1, 0, ended)]
@@ -180,13 +180,6 @@ contains
     material_of = model%material_of
     digest = model%material_digest
     materials = join(model%material_name, newline)//newline
-    sets = ""
-    allocate (n_member(model%n_sheet_set), member(0))
-    do i = 1, model%n_sheet_set
-      sets = sets//model%set(i)%name//newline
-      n_member(i) = size(model%set(i)%node)
-      member = [member, model%set(i)%node]
-    end do
     call writer%integers("sizes", n_sizes, sizes)
     call writer%reals("x0", size(x0), x0)
     call writer%reals("thickness", 1, thickness)
@@ -195,10 +188,46 @@ contains
     call writer%integers("material_of", size(material_of), material_of)
     call writer%integers("material_digest", size(digest), digest)
     call visit_text("materials", materials, writer)
-    call visit_text("sets", sets, writer)
-    call writer%integers("set_size", size(n_member), n_member)
-    call writer%integers("set_node", size(member), member)
+    call visit_sets("", model%set(:model%n_sheet_set), writer)
+    if (model%mesh_number > 0) call visit_refined(model, writer)
   end subroutine visit_mesh
+
+  !> Write node sets.
+  subroutine visit_sets(prefix, set, writer)
+    !> Of the names of the datasets.
+    character(len=*), intent(in) :: prefix
+    type(node_set_t), intent(in) :: set(:)
+    type(writer_t), intent(inout) :: writer
+
+    integer, allocatable :: n_member(:), member(:)
+    character(len=:), allocatable :: names
+    integer :: i
+
+    names = ""
+    allocate (n_member(size(set)), member(0))
+    do i = 1, size(set)
+      names = names//set(i)%name//newline
+      n_member(i) = size(set(i)%node)
+      member = [member, set(i)%node]
+    end do
+    call visit_text(prefix//"sets", names, writer)
+    call writer%integers(prefix//"set_size", size(n_member), n_member)
+    call writer%integers(prefix//"set_node", size(member), member)
+  end subroutine visit_sets
+
+  !> Write what a restart cannot find anew on a refined mesh: the node sets of the input, which may
+  !> have been selected by places, and the positions at the start of the job.
+  subroutine visit_refined(model, writer)
+    type(model_t), intent(in) :: model
+    type(writer_t), intent(inout) :: writer
+
+    real(wp), allocatable :: x(:, :)
+
+    call visit_sets("input_", model%set(model%n_sheet_set + 1:), writer)
+    if (.not. allocated(model%x_start)) return
+    x = model%x_start
+    call writer%reals("x_start", size(x), x)
+  end subroutine visit_refined
 
   !> Write levels and bound nodes, where there are any, and the number of refinements.
   subroutine visit_refinement(model, writer)

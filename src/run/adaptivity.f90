@@ -14,7 +14,7 @@ module dd3_run_adaptivity
   use dd3_base_kinds, only : pi, wp
   use dd3_base_verdict, only : verdict_converged, verdict_t
   use dd3_input_case, only : case_t
-  use dd3_model_bound_nodes, only : give_to_parents
+  use dd3_model_edge_length, only : edge_lengths
   use dd3_model_model, only : model_t
   use dd3_model_reactions, only : reactions
   use dd3_model_refined_state, only : refined_state, sheet_of
@@ -68,38 +68,18 @@ contains
     type(model_t), intent(in) :: model
     type(adaptive_spec_t), intent(in) :: spec
 
-    real(wp) :: length(model%n_element), weight(model%n_element)
     integer :: l, tool
 
     self%spec = spec
     self%spec%angle = spec%angle*pi/180.0_wp
     if (spec%levels == 0) return
-    length = element_lengths(model, model%x0)
-    weight = 1.0_wp
-    if (allocated(model%level)) weight = 0.25_wp**model%level
-    self%length = sum(length*sqrt(weight))/sum(weight)
+    self%length = model%undivided_length
     allocate (self%field(model%n_tool))
     do tool = 1, model%n_tool
       call new_turn_field(self%field(tool), model%tool(tool)%surface, &
           [(self%length*0.5_wp**l, l=spec%levels, 0, -1)])
     end do
   end subroutine new_adaptivity
-
-  !> Return the mean edges of the elements in the plane of the sheet, `(n_element)`, mm.
-  pure function element_lengths(model, x) result(length)
-    type(model_t), intent(in) :: model
-    !> Positions of the nodes, `(3, n_node)`, mm.
-    real(wp), intent(in) :: x(:, :)
-    real(wp) :: length(model%n_element)
-
-    integer :: e, i
-
-    do e = 1, model%n_element
-      associate (node => model%connectivity(:4, e))
-        length(e) = 0.25_wp*sum([(norm2(x(:, node(modulo(i, 4) + 1)) - x(:, node(i))), i=1, 4)])
-      end associate
-    end do
-  end function element_lengths
 
   !> Whether elements may be divided in the running phase: not once the tools leave the sheet.
   pure logical function may_refine(self, model, state)
@@ -119,7 +99,7 @@ contains
     type(state_t), intent(in) :: state
     logical :: divisible(model%n_element)
 
-    divisible = 0.5_wp*element_lengths(model, state%x) >= (1.0_wp - round_off)*self%spec%size
+    divisible = 0.5_wp*edge_lengths(model, state%x) >= (1.0_wp - round_off)*self%spec%size
     if (allocated(model%level)) divisible = divisible .and. model%level < self%spec%levels
   end function divisible
 

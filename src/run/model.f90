@@ -245,6 +245,8 @@ contains
       call run%adaptivity%find_marks(model, run%committed, marked)
       if (.not. any(marked)) return
       before = model%n_element
+      call run%records%keep_state(model, run%committed, error)
+      if (allocated(error)) return
       call run%adaptivity%refine(case, marked, model, run%committed, error)
       if (allocated(error)) return
       if (model%n_element == before) return

@@ -9,6 +9,7 @@ module dd3_setup_model
   use dd3_mesh_inp_mesh, only : new_inp_mesh
   use dd3_mesh_mesh, only : mesh_t
   use dd3_model_contact_points, only : keep_own_points
+  use dd3_model_fingerprint, only : sheet_digests
   use dd3_model_internal_variables, only : new_variables
   use dd3_model_model, only : model_t
   use dd3_setup_checks, only : check_solver, check_start, check_supports
@@ -58,6 +59,7 @@ contains
     !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
 
+    if (.not. allocated(model%first_digest)) model%first_digest = sheet_digests(model)
     call set_on_sheet(model, case, sheet, size(case%start) > 0, errors)
     if (errors%count == 0) call keep_own_points(model)
   end subroutine rebuild_model

@@ -14,6 +14,7 @@ module dd3_setup_on_sheet
   use dd3_model_bound_nodes, only : set_bound_nodes
   use dd3_model_contact_data, only : contact_data_t
   use dd3_model_contact_points, only : set_contact_points
+  use dd3_model_edge_length, only : undivided_length
   use dd3_model_fingerprint, only : tool_digest
   use dd3_model_model, only : model_t
   use dd3_model_part, only : new_part
@@ -63,7 +64,10 @@ contains
     end if
     call set_mesh(model, case, mesh, errors)
     if (errors%count > 0) return
-    if (.not. rebuilt) call set_axes(model, case, errors)
+    if (.not. rebuilt) then
+      model%undivided_length = undivided_length(model)
+      call set_axes(model, case, errors)
+    end if
     if (errors%count > 0) return
     call find_candidates(model, case, mesh, errors)
     if (errors%count > 0) return

@@ -5,7 +5,7 @@ module dd3_setup_sheet_file
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : newline, text_t
   use dd3_input_case, only : start_spec_t
-  use dd3_mesh_mesh, only : mesh_t
+  use dd3_mesh_mesh, only : mesh_set_t, mesh_t
   use dd3_output_hdf5, only : start_hdf5
   use dd3_output_hdf5_read, only : close_hdf5, dataset_size, open_hdf5, read_integers, read_reals, &
       read_text_attribute
@@ -57,6 +57,8 @@ contains
             "a run that has ended, or at = last")
       else
         call read_mesh(sheet, file, sizes, ok)
+        ! It counts the refinements of the run that has read the sheet.
+        sheet%mesh%mesh_number = 0
         call read_state(sheet, file, sizes, ok)
         if (.not. ok) call report("the sheet in '"//path//"' is incomplete", &
             "a run of this version")
@@ -76,10 +78,12 @@ contains
 
   end subroutine read_sheet
 
-  !> Read the sheet of a restart file in its place, on which the model of a run can be built anew
-  !> before its state is read. Materials have their numbers in that run.
+  !> Read the refined sheet of a restart file, on which the model of the run can be built anew before
+  !> its state is read: positions at the start of the job, node sets also of the input. Materials have
+  !> their numbers in that run.
   subroutine read_restart_sheet(path, sheet, error)
     character(len=*), intent(in) :: path
+    !> Its mesh has the number 0, and nothing else, where no element was divided in the run.
     type(sheet_t), intent(out) :: sheet
     !> Set if the file cannot be read.
     type(error_t), allocatable, intent(out) :: error
@@ -91,9 +95,12 @@ contains
     call open_restart(path, file, error)
     if (allocated(error)) return
     ok = .true.
-    call read_integers(file, "mesh/sizes", sizes, ok)
-    if (ok) call read_mesh(sheet, file, sizes, ok)
-    call read_state(sheet, file, sizes, ok)
+    call read_number(file, sheet%mesh, ok)
+    if (sheet%mesh%mesh_number > 0) then
+      call read_integers(file, "mesh/sizes", sizes, ok)
+      if (ok) call read_mesh(sheet, file, sizes, ok)
+      if (ok) call read_start(sheet, file, ok)
+    end if
     call close_hdf5(file)
     if (.not. ok) call fatal_error(error, "'"//path//"' has no whole mesh", "E204")
   end subroutine read_restart_sheet
@@ -108,10 +115,8 @@ contains
     logical, intent(inout) :: ok
 
     integer(hid_t) :: group
-    type(text_t), allocatable :: name(:)
-    integer, allocatable :: n_member(:), member(:)
     real(wp) :: thickness(1)
-    integer :: i, first, n, status
+    integer :: status
 
     associate (mesh => sheet%mesh)
       mesh%n_node = sizes(at_node)
@@ -133,22 +138,70 @@ contains
       call read_names(file, "mesh/materials", sheet%material, ok)
       allocate (sheet%digest(size(sheet%material)))
       call read_integers(file, "mesh/material_digest", sheet%digest, ok)
-      call read_names(file, "mesh/sets", name, ok)
-      allocate (n_member(size(name)), mesh%set(size(name)))
-      call read_integers(file, "mesh/set_size", n_member, ok)
-      call dataset_size(file, "mesh/set_node", n)
-      ok = ok .and. n == sum(n_member)
-      if (.not. ok) return
-      allocate (member(n))
-      call read_integers(file, "mesh/set_node", member, ok)
-      first = 1
-      do i = 1, size(name)
-        mesh%set(i)%name = name(i)%s
-        mesh%set(i)%node = member(first:first + n_member(i) - 1)
-        first = first + n_member(i)
-      end do
+      call read_sets(file, "mesh/", mesh%set, ok)
     end associate
   end subroutine read_mesh
+
+  !> Read what the restart file of a refined sheet has besides.
+  subroutine read_start(sheet, file, ok)
+    !> With its mesh.
+    type(sheet_t), intent(inout) :: sheet
+    integer(hid_t), intent(in) :: file
+    logical, intent(inout) :: ok
+
+    type(mesh_set_t), allocatable :: set(:)
+    integer :: n
+
+    call read_sets(file, "mesh/input_", set, ok)
+    sheet%mesh%set = [sheet%mesh%set, set]
+    sheet%x = sheet%mesh%x
+    call dataset_size(file, "mesh/x_start", n)
+    if (n >= 0) call read_block(file, "mesh/x_start", size(sheet%x), sheet%x, ok)
+  end subroutine read_start
+
+  !> Read node sets.
+  subroutine read_sets(file, prefix, set, ok)
+    integer(hid_t), intent(in) :: file
+    !> Of the names of the datasets.
+    character(len=*), intent(in) :: prefix
+    type(mesh_set_t), allocatable, intent(out) :: set(:)
+    !> Success flag.
+    logical, intent(inout) :: ok
+
+    type(text_t), allocatable :: name(:)
+    integer, allocatable :: n_member(:), member(:)
+    integer :: i, first, n
+
+    call read_names(file, prefix//"sets", name, ok)
+    allocate (n_member(size(name)), set(size(name)))
+    call read_integers(file, prefix//"set_size", n_member, ok)
+    call dataset_size(file, prefix//"set_node", n)
+    ok = ok .and. n == sum(n_member)
+    if (.not. ok) return
+    allocate (member(n))
+    call read_integers(file, prefix//"set_node", member, ok)
+    first = 1
+    do i = 1, size(name)
+      set(i)%name = name(i)%s
+      set(i)%node = member(first:first + n_member(i) - 1)
+      first = first + n_member(i)
+    end do
+  end subroutine read_sets
+
+  !> Read the number of refinements, which is left out if there are none.
+  subroutine read_number(file, mesh, ok)
+    integer(hid_t), intent(in) :: file
+    type(mesh_t), intent(inout) :: mesh
+    !> Success flag; no-op if false.
+    logical, intent(inout) :: ok
+
+    integer :: number(1), n
+
+    call dataset_size(file, "mesh/number", n)
+    if (n /= 1) return
+    call read_integers(file, "mesh/number", number, ok)
+    mesh%mesh_number = number(1)
+  end subroutine read_number
 
   !> Read levels and bound nodes, where there are any, and the number of refinements.
   subroutine read_refinement(file, mesh, ok)
@@ -158,13 +211,9 @@ contains
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok
 
-    integer :: number(1), n
+    integer :: n
 
-    call dataset_size(file, "mesh/number", n)
-    if (n == 1) then
-      call read_integers(file, "mesh/number", number, ok)
-      mesh%mesh_number = number(1)
-    end if
+    call read_number(file, mesh, ok)
     call dataset_size(file, "mesh/level", n)
     if (n >= 0) then
       allocate (mesh%level(mesh%n_element))

@@ -163,12 +163,18 @@ def table(path):
 
 
 def hdf5(path):
-    """All datasets and attributes of a file by name, as types, shapes and bytes."""
+    """All datasets and attributes of a file by name, as types, shapes and bytes.
+
+    The chunks of fields of several meshes are those of the mesh with which the file was begun.
+    """
     found = {}
+    with h5py.File(path, "r") as file:
+        meshes = file["VTKHDF/NumberOfCells"].size if "VTKHDF" in file else 1
 
     def add(name, item):
         if isinstance(item, h5py.Dataset):
-            found[name] = (str(item.dtype), item.shape, item.chunks, item[()].tobytes())
+            chunks = item.chunks if meshes == 1 else None
+            found[name] = (str(item.dtype), item.shape, chunks, item[()].tobytes())
         for key, value in item.attrs.items():
             value = numpy.asarray(value)
             found[f"{name}@{key}"] = (str(value.dtype), value.shape, value.tobytes())
