@@ -83,7 +83,8 @@ contains
     call new_partition(self%partition, model)
     call set_elements(self, model, [(i, i=1, size(model%part%element))])
     allocate (self%tangent(6, 6, model%element%n_point, size(model%part%element)), source=0.0_wp)
-    allocate (self%element(most_threads()))
+    ! The choice of threads may take fewer at present than later on.
+    allocate (self%element(max(options%threads, most_threads())))
     do i = 1, size(self%element)
       associate (element => model%element)
         call new_element_work(self%element(i), element%n_node, element%n_point, element%n_group, &
