@@ -5,8 +5,8 @@ module dd3_mesh_hexahedra
   use dd3_base_kinds, only : wp
   implicit none
   private
-  public :: corner_natural, face_corner, find_neighbours, neighbours_t, corner_shape, &
-      same_nodes
+  public :: corner_natural, edge_axis, edge_ends, face_corner, find_neighbours, neighbours_t, &
+      corner_shape, same_nodes
 
   !> Natural coordinates of the corners.
   integer, parameter :: corner_natural(3, 8) = reshape([ &
@@ -15,6 +15,10 @@ module dd3_mesh_hexahedra
   !> Corners of the faces -xi, +xi, -eta, +eta, -zeta, +zeta.
   integer, parameter :: face_corner(4, 6) = reshape([ &
       1, 5, 8, 4, 2, 3, 7, 6, 1, 2, 6, 5, 4, 8, 7, 3, 1, 4, 3, 2, 5, 6, 7, 8], [4, 6])
+  !> Corners at the ends of the edges, and the natural axes along them.
+  integer, parameter :: edge_ends(2, 12) = reshape([1, 2, 2, 3, 3, 4, 4, 1, 5, 6, 6, 7, 7, 8, 8, &
+      5, 1, 5, 2, 6, 3, 7, 4, 8], [2, 12])
+  integer, parameter :: edge_axis(12) = [1, 2, 1, 2, 1, 2, 1, 2, 3, 3, 3, 3]
 
   !> Neighbours across the faces.
   type :: neighbours_t

@@ -10,7 +10,7 @@ module dd3_mesh_inp
   private
   public :: inp_t, inp_set_t, inp_source_t, new_inp, find_set, position_of_set, add_member, &
       make_room_for_nodes, &
-      make_room_for_elements
+      make_room_for_elements, add_constraint
 
   !> A set that another one names.
   type :: inp_source_t
@@ -39,7 +39,7 @@ module dd3_mesh_inp
   type :: inp_t
     character(len=:), allocatable :: file
     type(text_t), allocatable :: line(:)
-    integer :: n_node = 0, n_element = 0, n_set = 0
+    integer :: n_node = 0, n_element = 0, n_set = 0, n_constraint = 0
     !> Coordinates, mm, `x(:, 1:n_node)`.
     real(wp), allocatable :: x(:, :)
     integer, allocatable :: node_label(:), node_line(:)
@@ -49,6 +49,8 @@ module dd3_mesh_inp
     !> Labels of the nodes of the elements in the file's order, `corner(:, 1:n_element)`.
     integer, allocatable :: corner(:, :)
     integer, allocatable :: element_label(:), element_line(:)
+    !> Labels of the bound nodes and of the ends of their edges, `constraint(:, 1:n_constraint)`.
+    integer, allocatable :: constraint(:, :), constraint_line(:)
     !> `set(1:n_set)`.
     type(inp_set_t), allocatable :: set(:)
     type(error_list_t) :: errors
@@ -68,6 +70,7 @@ contains
     self%file = file
     allocate (self%x(3, room), self%node_label(room), self%node_line(room))
     allocate (self%corner(27, room), self%element_label(room), self%element_line(room))
+    allocate (self%constraint(3, room), self%constraint_line(room))
     allocate (self%set(8))
   end subroutine new_inp
 
@@ -186,6 +189,25 @@ contains
     call enlarge(self%element_label)
     call enlarge(self%element_line)
   end subroutine make_room_for_elements
+
+  !> Append a constraint.
+  pure subroutine add_constraint(self, label, line_number)
+    type(inp_t), intent(inout) :: self
+    !> Labels of the bound node and of the ends of its edge.
+    integer, intent(in) :: label(3), line_number
+
+    integer, allocatable :: larger(:, :)
+
+    if (self%n_constraint == size(self%constraint_line)) then
+      allocate (larger(3, 2*self%n_constraint))
+      larger(:, :self%n_constraint) = self%constraint
+      call move_alloc(larger, self%constraint)
+      call enlarge(self%constraint_line)
+    end if
+    self%n_constraint = self%n_constraint + 1
+    self%constraint(:, self%n_constraint) = label
+    self%constraint_line(self%n_constraint) = line_number
+  end subroutine add_constraint
 
   !> Double the size of a list.
   pure subroutine enlarge(list)

@@ -6,7 +6,7 @@ module dd3_mesh_inp_check
   use dd3_base_near_points, only : near_pairs
   use dd3_base_text, only : to_text
   use dd3_mesh_hanging, only : find_hanging
-  use dd3_mesh_hexahedra, only : corner_shape, neighbours_t
+  use dd3_mesh_hexahedra, only : corner_shape, edge_axis, edge_ends, neighbours_t
   use dd3_mesh_inp, only : inp_t
   use dd3_mesh_layers, only : layers_t, layers_ambiguous, layers_none
   implicit none
@@ -21,11 +21,6 @@ module dd3_mesh_inp_check
   real(wp), parameter :: middle = 0.02_wp
   !> Number of pairs of nodes at which the search for those at the same place ends.
   integer, parameter :: most_pairs = 100
-
-  !> Corners at the ends of the edges, and the natural axes along them.
-  integer, parameter :: edge_ends(2, 12) = reshape([1, 2, 2, 3, 3, 4, 4, 1, 5, 6, 6, 7, 7, 8, 8, &
-      5, 1, 5, 2, 6, 3, 7, 4, 8], [2, 12])
-  integer, parameter :: edge_axis(12) = [1, 2, 1, 2, 1, 2, 1, 2, 3, 3, 3, 3]
 
   !> Defects of an element.
   integer, parameter :: sound = 0, mirrored = 1, by_rows = 2, inverted = 3, flat = 4
@@ -165,32 +160,39 @@ contains
     end do
   end function node_of_element
 
-  !> Bind nodes that lie in the middle of an edge of an element to which they do not belong; report
-  !> those that lie elsewhere on its edges and faces.
-  subroutine check_hanging(inp, node, neighbours, axis, bound)
+  !> Bind the nodes of *MPC and others that lie in the middle of an edge of an element to which they
+  !> do not belong; report those that lie elsewhere on its edges and faces.
+  subroutine check_hanging(inp, node, neighbours, axis, constraint, bound)
     type(inp_t), intent(inout) :: inp
     !> Nodes of the elements, their corners first.
     integer, intent(in) :: node(:, :)
     type(neighbours_t), intent(in) :: neighbours
     !> Natural axis from bottom to top of each element.
     integer, intent(in) :: axis(:)
+    !> Bound nodes and the ends of their edges by *MPC, `(3, n)`.
+    integer, intent(in) :: constraint(:, :)
     !> Bound nodes and the ends of their edges, `(3, n)`; not allocated if there are none.
     integer, allocatable, intent(out) :: bound(:, :)
 
     character(len=:), allocatable :: others
     integer, allocatable :: found(:, :), ends(:, :)
     integer :: i, k
-    logical :: parent(inp%n_node)
+    logical :: parent(inp%n_node), by_constraint(0:inp%n_node)
 
     call find_hanging(inp%x(:, :inp%n_node), node, neighbours, inp%n_node, found)
+    by_constraint = .false.
+    by_constraint(constraint(1, :)) = .true.
+    found = found(:, pack([(i, i=1, size(found, 2))], .not. by_constraint(found(1, :))))
     allocate (ends(2, size(found, 2)))
     do i = 1, size(found, 2)
       ends(:, i) = edge_around(inp%x, node(:, found(2, i)), axis(found(2, i)), found(1, i))
     end do
     parent = .false.
     parent(pack(ends, ends > 0)) = .true.
+    parent([constraint(2:, :)]) = .true.
     do i = 1, size(found, 2)
-      if (parent(found(1, i)) .or. size(node, 1) /= 8) ends(:, i) = 0
+      if (parent(found(1, i)) .or. any(by_constraint(ends(:, i)))) ends(:, i) = 0
+      if (size(node, 1) /= 8) ends(:, i) = 0
     end do
     associate (wrong => pack([(i, i=1, size(found, 2))], ends(1, :) == 0))
       do i = 1, min(most_named, size(wrong))
@@ -208,8 +210,8 @@ contains
         end associate
       end do
     end associate
-    if (size(found, 2) > 0) bound = reshape([(found(1, i), ends(:, i), i=1, size(found, 2))], &
-        [3, size(found, 2)])
+    k = size(found, 2) + size(constraint, 2)
+    if (k > 0) bound = reshape([(found(1, i), ends(:, i), i=1, size(found, 2)), constraint], [3, k])
   end subroutine check_hanging
 
   !> Return the ends of the edge across the thickness direction of an element with eight nodes in

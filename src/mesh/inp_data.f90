@@ -5,20 +5,21 @@ module dd3_mesh_inp_data
   use dd3_base_text, only : to_text, upper_case
   use dd3_input_number, only : parse_real
   use dd3_input_number_check, only : not_a_number
-  use dd3_mesh_inp, only : add_member, inp_source_t, inp_t, make_room_for_elements, &
-      make_room_for_nodes
+  use dd3_mesh_inp, only : add_constraint, add_member, inp_source_t, inp_t, &
+      make_room_for_elements, make_room_for_nodes
   use dd3_mesh_inp_line, only : field_integer, fields_t, split_fields
   implicit none
   private
-  public :: reading_t, outside, skipped, heading, node, element, set, keywords
+  public :: reading_t, outside, skipped, heading, node, element, set, constraint, keywords
   public :: read_data, end_element, add_source, is_name
 
   !> What the data lines below a keyword are.
-  integer, parameter :: outside = 0, skipped = 1, heading = 2, node = 3, element = 4, set = 5
+  integer, parameter :: outside = 0, skipped = 1, heading = 2, node = 3, element = 4, set = 5, &
+      constraint = 6
   !> Largest coordinate, mm.
   real(wp), parameter :: largest_coordinate = 1.0e7_wp
   !> Keywords that are read.
-  character(len=*), parameter :: keywords = "*HEADING, *NODE, *ELEMENT, *NSET, *ELSET"
+  character(len=*), parameter :: keywords = "*HEADING, *NODE, *ELEMENT, *NSET, *ELSET, *MPC"
 
   !> State of the reader.
   type :: reading_t
@@ -60,6 +61,8 @@ contains
       call read_node(self, at, text, fields)
     case (element)
       call read_element(self, at, text, fields)
+    case (constraint)
+      call read_constraint(self, at, text, fields)
     case default
       call read_members(self, at, text, fields)
     end select
@@ -185,6 +188,33 @@ contains
       call add_member(self%set(at%set), label, at%number)
     end do
   end subroutine read_members
+
+  !> Read a constraint: its type, a bound node, and the ends of the edge in whose middle it lies.
+  subroutine read_constraint(self, at, text, fields)
+    type(inp_t), intent(inout) :: self
+    type(reading_t), intent(in) :: at
+    character(len=*), intent(in) :: text
+    type(fields_t), intent(in) :: fields
+
+    character(len=*), parameter :: form = "LINEAR, a node, the two ends of the edge in whose "// &
+        "middle it lies"
+    integer :: label(3), i, before
+
+    before = self%errors%count
+    associate (word => text(fields%first(1):fields%last(1)))
+      if (upper_case(word) /= "LINEAR") then
+        call self%report(at%number, "constraints of type '"//word//"' are not read", form, &
+            fields%first(1), fields%last(1))
+      else if (fields%n /= 4) then
+        call self%report(at%number, "expected 4 values, got "//to_text(fields%n), form)
+      end if
+    end associate
+    if (self%errors%count > before) return
+    do i = 1, 3
+      call read_label(self, at, text, fields, i + 1, form, label(i))
+    end do
+    if (self%errors%count == before) call add_constraint(self, label, at%number)
+  end subroutine read_constraint
 
   !> Add a set whose members the set of the section has too.
   subroutine add_source(self, at, name, of_elements)

@@ -1,14 +1,14 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Reader of a strict subset of the `.inp` files of Abaqus and CalculiX: *HEADING, *NODE, *ELEMENT
-!> of one type, *NSET and *ELSET. Anything else is refused by name and line. The result is the file
-!> as plain data, with nodes and elements by label; all errors of a file are reported.
+!> of one type, *NSET, *ELSET and *MPC. Anything else is refused by name and line. The result is the
+!> file as plain data, with nodes and elements by label; all errors of a file are reported.
 module dd3_mesh_inp_file
   use dd3_base_error, only : error_t, error_list_t, location_t
   use dd3_base_text, only : join, upper_case
   use dd3_input_text_file, only : read_lines
   use dd3_mesh_inp, only : find_set, inp_t, new_inp
-  use dd3_mesh_inp_data, only : add_source, element, end_element, heading, is_name, keywords, &
-      node, read_data, reading_t, set, skipped
+  use dd3_mesh_inp_data, only : add_source, constraint, element, end_element, heading, is_name, &
+      keywords, node, read_data, reading_t, set, skipped
   use dd3_mesh_inp_element, only : inp_type_names, nodes_of_type
   use dd3_mesh_inp_line, only : is_comment, parameter_list_t, split_keyword
   implicit none
@@ -84,6 +84,8 @@ contains
       call take_elements(self, at, text, word)
     case ("*elset")
       call begin_set(self, at, text, word, "elset")
+    case ("*mpc")
+      at%section = constraint
     case default
       call self%report(number, "the keyword "//upper_case(trim(word%name(1)))//" is not read", &
           keywords//"; a model is turned into such a file by dd3 mesh", 1, &

@@ -12,6 +12,7 @@ module dd3_mesh_inp_mesh
   use dd3_mesh_inp, only : inp_t
   use dd3_mesh_inp_check, only : check_hanging, check_layers, check_neighbours, &
       check_places, check_roles, check_shapes
+  use dd3_mesh_inp_constraint, only : check_constraints, resolve_constraints
   use dd3_mesh_inp_element, only : node_order
   use dd3_mesh_inp_file, only : read_inp
   use dd3_mesh_inp_sets, only : resolve_sets
@@ -33,7 +34,7 @@ contains
 
     type(inp_t) :: inp
     type(layers_t) :: layers
-    integer, allocatable :: node(:, :)
+    integer, allocatable :: node(:, :), constraint(:, :)
     integer :: before
 
     before = errors%count
@@ -46,8 +47,8 @@ contains
           "an element with "//to_text(inp%n_element_node)//" nodes", code="E147")
       return
     end if
-    if (inp%errors%count == 0) call resolve(mesh, inp, node)
-    if (inp%errors%count == 0) call check_geometry(inp, node, layers, mesh%bound)
+    if (inp%errors%count == 0) call resolve(mesh, inp, node, constraint)
+    if (inp%errors%count == 0) call check_geometry(inp, node, constraint, layers, mesh%bound)
     call push_file_errors(errors, inp%errors, spec%source%at("file"))
     if (inp%errors%count > 0) return
     mesh%x = inp%x(:, :inp%n_node)
@@ -65,12 +66,15 @@ contains
     if (spec%element /= "") text = "element = "//spec%element
   end function element_of
 
-  !> Replace the labels by numbers in the order of the file, in elements and sets.
-  subroutine resolve(mesh, inp, node)
+  !> Replace the labels by numbers in the order of the file, in elements, sets and
+  !> constraints.
+  subroutine resolve(mesh, inp, node, constraint)
     type(mesh_t), intent(inout) :: mesh
     type(inp_t), intent(inout) :: inp
     !> Nodes of the elements in the file's order, `(n_element_node, n_element)`.
     integer, allocatable, intent(out) :: node(:, :)
+    !> Bound nodes and the ends of their edges by *MPC, `(3, n)`.
+    integer, allocatable, intent(out) :: constraint(:, :)
 
     type(number_index_t) :: nodes, elements
 
@@ -84,6 +88,7 @@ contains
     call resolve_elements(inp, nodes, node)
     if (inp%errors%count == 0) call report_unused(inp, node)
     call resolve_sets(mesh, inp, nodes, elements, node)
+    call resolve_constraints(inp, nodes, constraint)
     mesh%node_label = inp%node_label
   end subroutine resolve
 
@@ -161,10 +166,12 @@ contains
   end subroutine report_unused
 
   !> Check shapes and neighbours, find the thickness direction and bind hanging nodes.
-  subroutine check_geometry(inp, node, layers, bound)
+  subroutine check_geometry(inp, node, constraint, layers, bound)
     type(inp_t), intent(inout) :: inp
     !> Nodes of the elements, their corners first, `(n_element_node, n_element)`.
     integer, intent(in) :: node(:, :)
+    !> Bound nodes and the ends of their edges by *MPC.
+    integer, intent(in) :: constraint(:, :)
     type(layers_t), intent(out) :: layers
     !> Bound nodes and the ends of their edges; not allocated if there are none.
     integer, allocatable, intent(out) :: bound(:, :)
@@ -182,7 +189,9 @@ contains
       call find_layers(layers, neighbours, corner, inp%x)
     end associate
     call check_layers(inp, layers)
-    if (inp%errors%count == 0) call check_hanging(inp, node, neighbours, layers%axis, bound)
+    if (inp%errors%count == 0) call check_constraints(inp, node, layers%axis, constraint)
+    if (inp%errors%count == 0) call check_hanging(inp, node, neighbours, layers%axis, constraint, &
+        bound)
   end subroutine check_geometry
 
   !> Set the connectivity in our order of the nodes, with the thickness as third axis.

@@ -11,7 +11,7 @@ module dd3_sheet_core
   use dd3_sheet_location, only : corner_sign
   implicit none
   private
-  public :: chain_t, mark_columns, select_core, find_chains
+  public :: chain_t, columns_that_stay, select_core, find_chains
 
   !> Least distance of a corner of the core from the cut along an edge, over its length: the new
   !> layer is at least as wide.
@@ -26,17 +26,17 @@ module dd3_sheet_core
 
 contains
 
-  !> Mark the columns that stay.
-  pure subroutine mark_columns(cut, stays)
+  !> Return which columns stay.
+  pure function columns_that_stay(cut) result(stays)
     type(cut_function_t), intent(in) :: cut
-    logical, intent(out) :: stays(:)
+    logical :: stays(size(cut%plane, 2))
 
     integer :: c
 
     do c = 1, size(stays)
       stays(c) = cut%value_at(cut%plane(:, c)) > 0.0_wp
     end do
-  end subroutine mark_columns
+  end function columns_that_stay
 
   !> Select the quadrilaterals whose corners stay and are not too close to the cut, without those
   !> that hang on the others by a corner.
@@ -113,7 +113,7 @@ contains
     !> If given, only edges with an end that stays connect.
     logical, intent(in), optional :: stays(:)
 
-    integer :: stack(grid%n_quad), n, q, i, other, first
+    integer :: stack(grid%n_quad), across(3), n, q, i, k, first
 
     name = 0
     do first = 1, grid%n_quad
@@ -125,15 +125,17 @@ contains
         q = stack(n)
         n = n - 1
         do i = 1, 4
-          other = grid%neighbour(i, q)
-          if (other == 0) cycle
-          if (.not. member(other) .or. name(other) > 0) cycle
           if (present(stays)) then
             if (.not. any(stays(grid%corner([i, mod(i, 4) + 1], q)))) cycle
           end if
-          name(other) = first
-          n = n + 1
-          stack(n) = other
+          across = [grid%neighbour(i, q), grid%over_bound(:, i, q)]
+          do k = 1, 3
+            if (across(k) == 0) cycle
+            if (.not. member(across(k)) .or. name(across(k)) > 0) cycle
+            name(across(k)) = first
+            n = n + 1
+            stack(n) = across(k)
+          end do
         end do
       end do
     end do
@@ -158,7 +160,8 @@ contains
         do i = 1, n
           do j = 1, n
             if (group(i) == 0 .or. group(j) == 0 .or. group(i) >= group(j)) cycle
-            if (.not. any(grid%neighbour(:, quad(i)) == quad(j))) cycle
+            if (.not. (any(grid%neighbour(:, quad(i)) == quad(j)) .or. &
+                any(grid%over_bound(:, :, quad(i)) == quad(j)))) cycle
             group(j) = group(i)
             joined = .true.
           end do

@@ -3,7 +3,7 @@
 !> their centres, and which of all columns are bound afterwards.
 module dd3_sheet_division
   use dd3_mesh_mesh, only : mesh_t
-  use dd3_sheet_grid, only : grid_t
+  use dd3_sheet_grid, only : edge_between, grid_t
   implicit none
   private
   public :: division_t, new_division
@@ -122,17 +122,6 @@ contains
     end function is_half
 
   end subroutine divide_edge
-
-  !> Return the edge of a quadrilateral between two columns; 0 for none.
-  pure integer function edge_between(corner, ends) result(edge)
-    integer, intent(in) :: corner(4), ends(2)
-
-    do edge = 4, 1, -1
-      associate (own => corner([edge, mod(edge, 4) + 1]))
-        if (all(own == ends) .or. all(own == ends([2, 1]))) return
-      end associate
-    end do
-  end function edge_between
 
   !> Return the corners of a quarter of a divided quadrilateral. The quarter has the corner of its
   !> own number in common with the whole, and natural axes along those of the whole.

@@ -6,7 +6,7 @@ module dd3_sheet_grid
   use dd3_mesh_mesh, only : mesh_t
   implicit none
   private
-  public :: grid_t, list_quads, new_grid
+  public :: edge_between, grid_t, list_quads, new_grid
 
   !> Grid of a sheet.
   type :: grid_t
@@ -18,6 +18,9 @@ module dd3_sheet_grid
     integer, allocatable :: corner(:, :), element(:, :)
     !> Quadrilateral across the edge from corner i to corner i + 1, `(4, n_quad)`; 0 for none.
     integer, allocatable :: neighbour(:, :)
+    !> Quadrilaterals across an edge with a bound column, `(2, 4, n_quad)`: the two smaller ones, or
+    !> the larger one and 0; 0 for none.
+    integer, allocatable :: over_bound(:, :, :)
     !> Quadrilaterals at column c: `quad_at(first(c):first(c + 1) - 1)`.
     integer, allocatable :: quad_at(:), first(:)
   end type grid_t
@@ -83,6 +86,8 @@ contains
     end do
     call list_quads(self%corner, self%n_column, self%first, self%quad_at)
     call set_neighbours(self)
+    allocate (self%over_bound(2, 4, self%n_quad), source=0)
+    if (allocated(mesh%bound)) call set_over_bound(self, column_of, mesh%bound)
 
   contains
 
@@ -147,5 +152,57 @@ contains
       end do
     end do
   end subroutine set_neighbours
+
+  !> Find the quadrilaterals across the edges with a bound column.
+  pure subroutine set_over_bound(self, column_of, bound)
+    type(grid_t), intent(inout) :: self
+    !> Columns of the lowest nodes, 0 for the others, `(n_node)`.
+    integer, intent(in) :: column_of(:)
+    !> Bound nodes and the ends of their edges, `(3, n)`.
+    integer, intent(in) :: bound(:, :)
+
+    integer :: large, large_edge, small, small_edge, k, n
+
+    do n = 1, size(bound, 2)
+      associate (column => column_of(bound(:, n)))
+        if (column(1) == 0) cycle
+        call find_edge(self, column(2:), large, large_edge)
+        if (large == 0) cycle
+        do k = 1, 2
+          call find_edge(self, column([1, k + 1]), small, small_edge)
+          if (small == 0) cycle
+          self%over_bound(k, large_edge, large) = small
+          self%over_bound(1, small_edge, small) = large
+        end do
+      end associate
+    end do
+  end subroutine set_over_bound
+
+  !> Find a quadrilateral with an edge between two columns; 0 for none.
+  pure subroutine find_edge(self, ends, quad, edge)
+    type(grid_t), intent(in) :: self
+    integer, intent(in) :: ends(2)
+    integer, intent(out) :: quad, edge
+
+    integer :: k
+
+    do k = self%first(ends(1)), self%first(ends(1) + 1) - 1
+      quad = self%quad_at(k)
+      edge = edge_between(self%corner(:, quad), ends)
+      if (edge > 0) return
+    end do
+    quad = 0
+  end subroutine find_edge
+
+  !> Return the edge of a quadrilateral between two columns; 0 for none.
+  pure integer function edge_between(corner, ends) result(edge)
+    integer, intent(in) :: corner(4), ends(2)
+
+    do edge = 4, 1, -1
+      associate (own => corner([edge, mod(edge, 4) + 1]))
+        if (all(own == ends) .or. all(own == ends([2, 1]))) return
+      end associate
+    end do
+  end function edge_between
 
 end module dd3_sheet_grid

@@ -58,9 +58,11 @@ contains
     new%has_state = sheet%has_state
     new%report = sheet%report
     new%mesh%thickness = sheet%mesh%thickness
+    new%mesh%mesh_number = sheet%mesh%mesh_number
     call move_nodes(sheet%mesh%x, cut, place, moved, node, new%mesh%n_node, new%mesh%x)
     call move_nodes(sheet%x, cut, place, moved, node, new%mesh%n_node, new%x)
     call make_elements(sheet, cut, node, new%mesh)
+    if (allocated(sheet%mesh%bound)) call carry_bound(sheet%mesh, cut%grid, node, new%mesh)
     call make_sets(sheet%mesh, cut, place, node, name, new%mesh)
     if (sheet%has_state) call make_state(sheet, cut, element, moved, new)
     sheet = new
@@ -164,6 +166,7 @@ contains
       mesh%n_element_node = 8
       mesh%n_element = grid%n_layer*size(corner, 2)
       allocate (mesh%connectivity(8, mesh%n_element), mesh%material(mesh%n_element))
+      if (allocated(sheet%mesh%level)) allocate (mesh%level(mesh%n_element))
       do q = 1, size(corner, 2)
         centre = locate(grid, cut%plane, 0.25_wp*sum(cut%patch%plane(:, corner(:, q)), dim=2), &
             cut%grid%quad_at(grid%first(cut%source(corner(1, q)))))
@@ -171,10 +174,34 @@ contains
           e = element_number(cut, q, k)
           mesh%connectivity(:, e) = [node(k - 1, corner(:, q)), node(k, corner(:, q))]
           mesh%material(e) = sheet%mesh%material(grid%element(k, centre%quad))
+          if (allocated(mesh%level)) mesh%level(e) = sheet%mesh%level(grid%element(k, centre%quad))
         end do
       end do
     end associate
   end subroutine make_elements
+
+  !> Keep the bound nodes that stay. Near the cut there are none.
+  pure subroutine carry_bound(old, grid, node, mesh)
+    type(mesh_t), intent(in) :: old
+    !> Grid of the old mesh.
+    type(grid_t), intent(in) :: grid
+    !> Nodes of the columns, first of the old ones; 0 for one that goes.
+    integer, intent(in) :: node(0:, :)
+    type(mesh_t), intent(inout) :: mesh
+
+    integer :: number(old%n_node), bound(3, size(old%bound, 2)), c, i, n
+
+    do c = 1, grid%n_column
+      number(grid%node(:, c)) = node(:, c)
+    end do
+    n = 0
+    do i = 1, size(bound, 2)
+      if (any(number(old%bound(:, i)) == 0)) cycle
+      n = n + 1
+      bound(:, n) = number(old%bound(:, i))
+    end do
+    if (n > 0) mesh%bound = bound(:, :n)
+  end subroutine carry_bound
 
   !> Return the number of an element after the cut.
   pure integer function element_number(cut, quad, layer)

@@ -6,7 +6,8 @@
 !> flat (dd3_sheet_contour), and so is all that follows. What is well inside stays as it is; a layer
 !> of new quadrilaterals joins it to the lines (dd3_sheet_core, dd3_sheet_fitting), the columns near
 !> the cut are moved for their shape (dd3_sheet_smoothing), and the state of what is new or moved is
-!> that of the old sheet at its place (dd3_sheet_rebuild, dd3_sheet_transfer).
+!> that of the old sheet at its place (dd3_sheet_rebuild, dd3_sheet_transfer). A sheet with divided
+!> elements gets a uniform grid near the cut first (dd3_sheet_cut_levels).
 module dd3_sheet_trim
   use dd3_base_error, only : error_list_t
   use dd3_base_kinds, only : pi, wp
@@ -14,9 +15,10 @@ module dd3_sheet_trim
   use dd3_element_table, only : element_t
   use dd3_input_case, only : trim_spec_t
   use dd3_sheet_contour, only : find_contours
-  use dd3_sheet_core, only : find_chains, mark_columns, select_core
+  use dd3_sheet_core, only : columns_that_stay, find_chains, select_core
   use dd3_sheet_curves, only : curve_t, read_curves
   use dd3_sheet_cut_function, only : cut_function_t
+  use dd3_sheet_cut_levels, only : divide_near_cut
   use dd3_sheet_fitting, only : fit_chain, fit_t
   use dd3_sheet_grid, only : new_grid
   use dd3_sheet_location, only : bilinear, locate, natural_coordinates, place_t
@@ -49,19 +51,24 @@ contains
     type(loop_t), allocatable :: line(:)
     type(fit_t), allocatable :: fit(:)
     logical, allocatable :: stays(:)
+    logical :: divided
     integer :: before, i
 
     before = errors%count
     call read_curves(curve, spec, errors)
-    call check_sheet(cut, sheet, spec, element, errors)
-    if (errors%count > before) return
-    cutting%grid = cut%grid
-    cutting%keeps_inside = spec%keeps_inside
-    call project_curves(sheet, cut%grid, spec, curve, cutting%plane, cutting%loop, errors)
-    if (errors%count == before) call check_crossings(spec, curve, cutting%loop, errors)
-    if (errors%count > before) return
-    allocate (stays(cut%grid%n_column), cut%kept(cut%grid%n_quad))
-    call mark_columns(cutting, stays)
+    do
+      call check_sheet(cut, sheet, spec, element, errors)
+      if (errors%count > before) return
+      cutting%grid = cut%grid
+      cutting%keeps_inside = spec%keeps_inside
+      call project_curves(sheet, cut%grid, spec, curve, cutting%plane, cutting%loop, errors)
+      if (errors%count == before) call check_crossings(spec, curve, cutting%loop, errors)
+      if (errors%count > before) return
+      stays = columns_that_stay(cutting)
+      call divide_near_cut(sheet, cut%grid, element, stays, n_ring + 2, divided)
+      if (.not. divided) exit
+    end do
+    allocate (cut%kept(cut%grid%n_quad))
     call select_core(cutting, stays, cut%kept)
     call check_core(spec, cutting, cut%kept, curve, errors)
     if (errors%count > before) return
