@@ -11,7 +11,7 @@ module dd3_setup_on_sheet
   use dd3_mesh_build, only : add_sets
   use dd3_mesh_mesh, only : mark_directions, mesh_t
   use dd3_model_bound_faces, only : remove_inner_faces
-  use dd3_model_bound_nodes, only : set_bound_nodes
+  use dd3_model_bound_nodes, only : follow_parents, set_bound_nodes
   use dd3_model_contact_data, only : contact_data_t
   use dd3_model_contact_points, only : set_contact_points
   use dd3_model_edge_length, only : undivided_length
@@ -64,6 +64,7 @@ contains
     end if
     call set_mesh(model, case, mesh, errors)
     if (errors%count > 0) return
+    if (displaced) call follow_parents(model, model%x_start)
     if (.not. rebuilt) then
       model%undivided_length = undivided_length(model)
       call set_axes(model, case, errors)
@@ -125,6 +126,8 @@ contains
     call set_columns(model)
     if (allocated(mesh%level)) model%level = mesh%level
     call set_bound_nodes(model, mesh%bound)
+    ! Of a curved mesh from a file they lie near the places that the motion of their parents keeps.
+    call follow_parents(model, model%x0)
     call new_sheet_faces(model%face, model%element, mesh%connectivity)
     call remove_inner_faces(model)
     if (model%element%n_enhanced > 0) &

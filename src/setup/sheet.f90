@@ -11,6 +11,7 @@ module dd3_setup_sheet
   use dd3_element_table, only : element_t
   use dd3_setup_element, only : set_element_of_mesh
   use dd3_sheet_grid, only : grid_t, new_grid
+  use dd3_sheet_marks, only : find_levels
   use dd3_sheet_sheet, only : new_flat_sheet, sheet_t
   use dd3_sheet_trim, only : trim_sheet
   implicit none
@@ -39,6 +40,7 @@ contains
       if (errors%count == 0) call set_element_of_mesh(model, case, mesh, errors)
       if (errors%count == 0) call new_flat_sheet(sheet, mesh)
     end if
+    if (errors%count == 0) call set_levels(sheet%mesh)
     do i = 1, size(case%trim)
       if (errors%count == 0) call trim_sheet(sheet, case%trim(i), model%element, errors)
     end do
@@ -79,6 +81,18 @@ contains
           "at each node", "formulation = compliant", code="E148")
     end if
   end subroutine check_refinement
+
+  !> Find the levels of a mesh with bound nodes that a file gives without levels.
+  pure subroutine set_levels(mesh)
+    type(mesh_t), intent(inout) :: mesh
+
+    type(grid_t) :: grid
+    logical :: regular
+
+    if (allocated(mesh%level) .or. .not. allocated(mesh%bound)) return
+    call new_grid(grid, mesh, regular)
+    if (regular) call find_levels(mesh, grid)
+  end subroutine set_levels
 
   !> Find the materials of the sheet of another run among those of the case, by their names; they
   !> must have the same laws.

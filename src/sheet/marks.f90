@@ -10,7 +10,7 @@ module dd3_sheet_marks
   use dd3_sheet_grid, only : grid_t
   implicit none
   private
-  public :: balance, mark_balanced, marked_quads, quad_levels
+  public :: balance, find_levels, mark_balanced, marked_quads, quad_levels
 
 contains
 
@@ -45,6 +45,51 @@ contains
     level = 0
     if (allocated(mesh%level)) level = mesh%level(grid%element(1, :))
   end function quad_levels
+
+  !> Find the levels of a mesh with bound nodes whose levels are not known: across a bound column
+  !> they differ by one, across other edges they are the same; the lowest one is 0. They stay unknown
+  !> where the mesh was not made by divisions.
+  pure subroutine find_levels(mesh, grid)
+    type(mesh_t), intent(inout) :: mesh
+    !> Grid of the mesh.
+    type(grid_t), intent(in) :: grid
+
+    integer, parameter :: unknown = -huge(1)
+    integer :: level(grid%n_quad), waiting(grid%n_quad), across(3), change, first, i, k, n, q
+
+    level = unknown
+    do first = 1, grid%n_quad
+      if (level(first) /= unknown) cycle
+      level(first) = 0
+      waiting(1) = first
+      n = 1
+      do while (n > 0)
+        q = waiting(n)
+        n = n - 1
+        do i = 1, 4
+          across = [grid%neighbour(i, q), grid%over_bound(:, i, q)]
+          change = 0
+          ! The larger one has two across the edge.
+          if (across(2) > 0) change = merge(1, -1, across(3) > 0)
+          do k = 1, 3
+            if (across(k) == 0) cycle
+            if (level(across(k)) == unknown) then
+              level(across(k)) = level(q) + change
+              n = n + 1
+              waiting(n) = across(k)
+            else if (level(across(k)) /= level(q) + change) then
+              return
+            end if
+          end do
+        end do
+      end do
+    end do
+    level = level - minval(level)
+    allocate (mesh%level(mesh%n_element))
+    do q = 1, grid%n_quad
+      mesh%level(grid%element(:, q)) = level(q)
+    end do
+  end subroutine find_levels
 
   !> Return whether any element of each quadrilateral is marked.
   pure function marked_quads(grid, marked) result(quad)
