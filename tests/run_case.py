@@ -22,6 +22,7 @@ A case is a deck that says in comment lines what is expected (case_file.py), or 
     same        per column [factor, tolerance]: the last row is that of the first variant times the factor, within a
                 relative tolerance
     status      per column of status.csv [lowest, highest]: bounds of every row
+    elements    [lowest, highest]: number of elements at the last step of fields.vtkhdf
     codes       codes of messages that the run must give, a list; those of docs/messages.md
     contains    texts that the program's output must contain, a list: names and numbers, not sentences; after an exit
                 code of 1 or 2 the error stream alone
@@ -43,12 +44,14 @@ from case_file import SECONDS, cases, name_of, read_case
 from run_description import check_description
 
 from dd3.errors import Problem
+from dd3.fields import Fields
 from dd3.programs import command, launch, parser_of_runs
 from dd3.tables import number, read_table
 
 SELECTS = ("phase", "point")
 KNOWN = {"deck", "arguments", "exit_code", "reference", "along", "tolerance", "last", "equal", "same", "status",
-         "contains", "printed", "rows", "codes", "files", "variants", "labels", "timeout", "cost", "description"}
+         "elements", "contains", "printed", "rows", "codes", "files", "variants", "labels", "timeout", "cost",
+         "description"}
 REFUSED = (1, 2)  # exit codes of a run that was not begun
 TRACES = ("Backtrace", "SIGSEGV", "SIGABRT", "SIGFPE", "runtime error", "At line", "ERROR STOP", "Sanitizer")
 
@@ -156,6 +159,11 @@ def compare_ends(case, history, path, results):
             if not lowest <= value <= highest:
                 raise Mismatch(f"status.csv, increment {row.get('increment')}: {column} = {value:.9g}, "
                                f"not between {lowest:g} and {highest:g}")
+    if "elements" in case:
+        count, (lowest, highest) = Fields(results).size_of("Cells", -1), case["elements"]
+        compared += 1
+        if not lowest <= count <= highest:
+            raise Mismatch(f"{count} elements at the end, not between {lowest} and {highest}")
     return compared
 
 
