@@ -26,6 +26,13 @@ rows = ["clamp,0,5", "clamp,0,10", "draw,1,20", "draw,2,40"]
     "%s,%s,%g\\n" % (r.split(",")[0], r.split(",")[1], factor * float(r.split(",")[2])) for r in rows))
 (folder / "status.csv").write_text("increment,iterations\\n1,2\\n2,3\\n")
 (folder / "job.log").write_text("")
+if "--fields" in sys.argv:
+    import h5py
+    with h5py.File(folder / "fields.vtkhdf", "w") as file:
+        file["VTKHDF/NumberOfCells"] = [4, 7]
+        file["VTKHDF/Steps/Values"] = [0.0, 1.0, 2.0]
+        file["VTKHDF/Steps/PartOffsets"] = [0, 1, 1]
+        file["VTKHDF/Steps"].attrs["NSteps"] = 3
 code = 3 if "--stop" in sys.argv else 0
 (folder / "run.json").write_text(pathlib.Path("{scratch}", "run_%d.json" % code).read_text())
 print("the run is over")
@@ -163,6 +170,11 @@ class RunCase(unittest.TestCase):
     def test_last_row_and_status(self):
         self.refuse("last row: force = 40", reference=None, last={"force": [41, 0.5]})
         self.refuse("iterations = 3", reference=None, status={"iterations": [0, 2]})
+
+    def test_elements_at_the_end(self):
+        code, output = self.run_case(reference=None, arguments=["--fields"], elements=[7, 7])
+        self.assertEqual(code, 0, output)
+        self.refuse("7 elements at the end", reference=None, arguments=["--fields"], elements=[1, 6])
 
     def test_sums_of_columns(self):
         code, output = self.run_case(reference=None, equal=[[["force", "travel"], ["travel", "force"], 0]])
