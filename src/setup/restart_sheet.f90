@@ -61,7 +61,7 @@ contains
     do i = 1, merge(size(model%material), 0, same)
       same = same .and. same_name(sheet%material(i)%s, trim(model%material_name(i)))
     end do
-    if (.not. same) names = trim(names//merge(", ", "  ", names /= "")//"the list of materials")
+    if (.not. same) names = trim(names//merge(", ", "  ", names /= "")//"the materials")
     names = trim(adjustl(names))
   end function parts_that_differ
 
