@@ -157,8 +157,8 @@ contains
       call fatal_error(error, "method = "//case%solver%method//" of *SOLVER needs one process, "// &
           "got "//to_text(n_ranks())//"; expected one of: "//join(expected, " "), "E205")
     else if (case%adaptive%levels > 0) then
-      call fatal_error(error, "adaptive = "//to_text(case%adaptive%levels)//" needs one process, "// &
-          "got "//to_text(n_ranks())//"; expected adaptive = 0, or one process", "E205")
+      call fatal_error(error, "adaptive = "//to_text(case%adaptive%levels)//" needs one "// &
+          "process, got "//to_text(n_ranks())//"; expected adaptive = 0, or one process", "E205")
     else if (model%n_bound > 0) then
       call fatal_error(error, "the sheet has elements of different sizes, which "// &
           "need one process, got "//to_text(n_ranks()), "E205")

@@ -78,9 +78,9 @@ contains
 
   end subroutine read_sheet
 
-  !> Read the refined sheet of a restart file, on which the model of the run can be built anew before
-  !> its state is read: positions at the start of the job, node sets also of the input. Materials have
-  !> their numbers in that run.
+  !> Read the refined sheet of a restart file, on which the model of the run can be built anew
+  !> before its state is read: positions at the start of the job, node sets also of the input.
+  !> Materials have their numbers in that run.
   subroutine read_restart_sheet(path, sheet, error)
     character(len=*), intent(in) :: path
     !> Its mesh has the number 0, and nothing else, where no element was divided in the run.
