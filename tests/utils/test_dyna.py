@@ -464,7 +464,7 @@ def test_nothing_else_left_out():
 # ---- mesh ---------------------------------------------------------------------------------------------------------------
 
 def test_hanging_nodes():
-    """Check that a node of one shell on the edge of another is refused with the node, also by *CONSTRAINED_ADAPTIVITY."""
+    """Check that a node of one shell on the edge of another is refused with the node, and bound by *CONSTRAINED_ADAPTIVITY."""
     mesh = flat_mesh()
     at = mesh.index("*ELEMENT_SHELL")
     # The first shell, 1 2 11 10, is divided in two across its edges 2 11 and 1 10.
@@ -473,8 +473,10 @@ def test_hanging_nodes():
     mesh = mesh[:at] + nodes + [mesh[at], *new] + mesh[at + 2:]
     said = refused(flat_deck(mesh=mesh))
     assert "node 902 lies on an edge or a face of element 2" in said and "deck.k:" in said
-    said = refused(flat_deck(mesh=mesh, more=["*CONSTRAINED_ADAPTIVITY", row(902, 2, 11)]))
-    assert "node 902 hangs between the nodes 2 and 11" in said
+    said = refused(flat_deck(mesh=mesh, more=["*CONSTRAINED_ADAPTIVITY", row(902, 2, 12)]))
+    assert "node 902 hangs between the nodes 2 and 12, which are not the ends of an edge of a shell" in said
+    blank = imported(flat_deck(mesh=mesh, more=["*CONSTRAINED_ADAPTIVITY", row(902, 2, 11)]))[0].blank
+    assert blank.mesh.bound == [(902, 2, 11), tuple(blank.upper[label] for label in (902, 2, 11))]
 
 
 def test_hanging_nodes_of_hexahedra():

@@ -3,6 +3,7 @@
 
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 from helpers import call
@@ -159,7 +160,7 @@ def test_units():
 
 
 def test_hanging_nodes():
-    """Check that a hanging node is refused, with and without *CONSTRAINED_ADAPTIVITY."""
+    """Check that a hanging node is refused but for one that *CONSTRAINED_ADAPTIVITY binds in the middle of an edge."""
     points = [(0, 0), (10, 0), (10, 10), (0, 10), (15, 0), (15, 5), (10, 5), (15, 10)]
     cells = {1: (1, 2, 3, 4), 2: (2, 5, 6, 7), 3: (7, 6, 8, 3)}
     text = "*KEYWORD\n*NODE\n" + "".join(f"{i:8d}" + wide((*point, 0), 16) for i, point in enumerate(points, 1))
@@ -170,7 +171,20 @@ def test_hanging_nodes():
     Path("adaptive").write_text(text)
     assert "node 7 lies on an edge of shell 1 that does not have it" in call("dynain", "adaptive", "x.out", expect=2)
     Path("adaptive").write_text(text + f"*CONSTRAINED_ADAPTIVITY\n{7:10d}{2:10d}{3:10d}\n")
-    assert "node 7 hangs between the nodes 2 and 3" in call("dynain", "adaptive", "x.out", expect=2)
+    call("dynain", "adaptive", "x.out")
+    with h5py.File("x.out/restart.h5") as file:
+        mesh = file["mesh"]
+        assert sorted(mesh["bound"][...].reshape(-1, 3).tolist()) == [[13, 3, 5], [14, 4, 6]]
+        sizes, names = mesh["set_size"][...], bytes(mesh["sets"][...].astype(np.uint8)).decode().split()
+        assert sizes[names.index("rim")] == 14  # all columns but the bound one
+    for ends, message in (((2, 4), "which are not the ends of an edge"), ((2, 7), "which are not the ends of an edge"),
+                          ((7, 6), "which are not the ends")):
+        wrong = text + f"*CONSTRAINED_ADAPTIVITY\n{7:10d}{ends[0]:10d}{ends[1]:10d}\n"
+        Path("wrong").write_text(wrong)
+        assert message in call("dynain", "wrong", "y.out", expect=2)
+    Path("wrong").write_text(text.replace(f"{7:8d}" + wide((10, 5, 0), 16), f"{7:8d}" + wide((10, 8, 0), 16))
+                             + f"*CONSTRAINED_ADAPTIVITY\n{7:10d}{2:10d}{3:10d}\n")
+    assert "node 7 is 3 from the middle of the edge" in call("dynain", "wrong", "y.out", expect=2)
 
 
 def test_named():

@@ -6,8 +6,8 @@
     dd3 dynain dynain op10.out --units "mm GPa"
 
 Shells of four nodes become elements solid_shell around their mid-surface; those that are numbered the other way round
-than the others are turned over. A node of one shell on the edge of another is refused: it would hang there, and the
-sheet tear. The folder that is written stands for that of a run: *START takes the sheet from it (from = op10.out), so
+than the others are turned over. A node of one shell on the edge of another must be bound in its middle by
+*CONSTRAINED_ADAPTIVITY, as in an adaptive mesh; others would hang there, and the sheet tear. The folder that is written stands for that of a run: *START takes the sheet from it (from = op10.out), so
 that it is released, or formed further. Stresses and plastic strains at heights between those of the file are
 interpolated; --points gives the points through the thickness (those of the file). Stresses are in MPa, or as --units
 says, which is asked for where they are hardly those of a metal in MPa. Back-stresses start at zero. The initial blank
@@ -29,7 +29,8 @@ from dd3.dyna.laws import UNITS
 from dd3.dyna.mesh import Cell, DynaMesh
 from dd3.dyna.parameters import as_number
 from dd3.errors import Problem
-from dd3.hanging import hanging_nodes
+from dd3.bound import Bound, rings
+from dd3.hanging import edges_of_hung, hanging_nodes
 from dd3.programs import made_folder
 from dd3.sheet_state import COLUMNS, NAME, SheetState, write_state
 
@@ -113,12 +114,11 @@ class Stresses:
         return values, after
 
 
-def ordered(quads: np.ndarray) -> np.ndarray:
+def ordered(quads: np.ndarray, bound: Bound) -> np.ndarray:
     """Return whether each quadrilateral is turned over against the greater part of those that it is joined with."""
     edges: dict[tuple[int, int], list[tuple[int, bool]]] = {}
-    for i, quad in enumerate(quads.tolist()):
-        for k in range(4):
-            a, b = quad[k - 1], quad[k]
+    for i, ring in enumerate(rings(quads, bound)):
+        for a, b in zip(ring, ring[1:] + ring[:1]):
             edges.setdefault((min(a, b), max(a, b)), []).append((i, a < b))
     neighbours: list[list[tuple[int, bool]]] = [[] for _ in quads]
     for sides in edges.values():
@@ -156,21 +156,21 @@ def thicknesses(cells: list[Cell]) -> np.ndarray:
     return found
 
 
-def conforming(reader: Reader, cells: list[Cell], middle: np.ndarray, quads: np.ndarray, used: np.ndarray) -> None:
-    """Raise a Problem at a hanging node."""
-    for card in reader.cards:
-        if card.keyword == "*CONSTRAINED_ADAPTIVITY":
-            for i, words in card.words(0):
-                label, *ends = (card.whole(i, word) for word in words[:3])
-                raise Problem(f"{card.place_of(i)}: error: node {label} hangs between the nodes {ends[0]} and "
-                              f"{ends[-1]}, and hanging nodes are not bound here: write the file of a mesh without "
-                              "*CONSTRAINED_ADAPTIVITY")
-    found = hanging_nodes(middle, quads.tolist())
+def bound_of(reader: Reader, cells: list[Cell], middle: np.ndarray, quads: np.ndarray, used: np.ndarray) -> Bound:
+    """Return the nodes that *CONSTRAINED_ADAPTIVITY binds by the ends of their edges; raise a Problem at others that
+    hang."""
+    number = {int(label): i for i, label in enumerate(used)}
+    hung = [(card.place_of(i), [card.whole(i, word) for word in words[:3]])
+            for card in reader.cards if card.keyword == "*CONSTRAINED_ADAPTIVITY" for i, words in card.words(0)]
+    bound = edges_of_hung([(place, labels) for place, labels in hung if labels[0] in number], number, middle,
+                          quads.tolist())
+    found = [pair for pair in hanging_nodes(middle, quads.tolist()) if pair[0] not in bound.values()]
     if found:
         cell = cells[found[0][1]]
         raise Problem(f"{cell.place}: error: node {used[found[0][0]]} lies on an edge of shell {cell.label} that does "
-                      f"not have it ({len(found)} such nodes): the sheet would tear there; hanging nodes are not "
-                      "bound here")
+                      f"not have it ({len(found)} such nodes): the sheet would tear there; expected "
+                      "*CONSTRAINED_ADAPTIVITY, which binds it in the middle of the edge")
+    return bound
 
 
 def check_units(path: Path, units: str | None, largest: float) -> None:
@@ -205,9 +205,9 @@ def sheet_of(path: Path, material: str, column: int, rolling: Sequence[float], u
     _, _, length, factor = UNITS[units or "mm MPa"]
     middle = length * np.array([mesh.nodes[int(node)] for node in used])
     at_corner = length * at_corner
-    conforming(reader, cells, middle, quads, used)
+    bound = bound_of(reader, cells, middle, quads, used)
     check_units(path, units, max(float(np.abs(rows[:, 1:7]).max()) for rows in stress.values()))
-    turned = ordered(quads)
+    turned = ordered(quads, bound)
     if turned.any():
         said.append(f"note: {turned.sum()} shells are numbered the other way round than the others, the first "
                     f"{cells[int(turned.argmax())].label}; they are turned over, with their heights")
@@ -224,9 +224,10 @@ def sheet_of(path: Path, material: str, column: int, rolling: Sequence[float], u
     axes = np.repeat(sheet_axes(middle, quads, rolling)[:, None], values.shape[1], axis=1)
     points = np.stack((lower, upper), axis=1).reshape(-1, 3)
     said += account_of(reader)
+    nodes = np.array([(node, a, b) for (a, b), node in bound.items()], int).reshape(-1, 3)
     return SheetState(points, points, np.hstack((2 * quads, 2 * quads + 1)), float(at_corner.mean()), tensor,
                       np.maximum(values[..., 6], 0.0), axes, [material], np.zeros(len(quads), int), levels,
-                      node_sets(quads, len(points))), said
+                      node_sets(quads, len(points), bound), np.concatenate((2 * nodes, 2 * nodes + 1))), said
 
 
 def reversed_rows(rows: np.ndarray) -> np.ndarray:
@@ -251,10 +252,10 @@ def account_of(reader: Reader) -> list[str]:
     return [f"left out: {item}" for item in reader.left_out()]
 
 
-def node_sets(quads: np.ndarray, count: int) -> dict[str, np.ndarray]:
+def node_sets(quads: np.ndarray, count: int, bound: Bound) -> dict[str, np.ndarray]:
     """Return the sets of nodes: all, those of the lower and of the upper face, by the names that they have on a blank,
     and those of the rim."""
-    edges = np.sort(np.concatenate([quads[:, [k, (k + 1) % 4]] for k in range(4)]), axis=1)
+    edges = np.sort([edge for ring in rings(quads, bound) for edge in zip(ring, ring[1:] + ring[:1])], axis=1)
     edges, times = np.unique(edges, axis=0, return_counts=True)
     rim = np.unique(edges[times == 1])
     number = np.arange(count)

@@ -1,14 +1,47 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Hanging nodes: nodes on an edge or a face of an element to which they do not belong, where the sheet would tear."""
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 from scipy.spatial import cKDTree
+
+from dd3.errors import Problem
 
 TOLERANCE = 1e-3  # distance from a face, and of nodes at the same place, over the shortest edge of the face
 FACES = np.array([(0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (3, 7, 6, 2), (0, 3, 2, 1), (4, 5, 6, 7)])
 CHUNK = 100_000  # faces at a time
 NEAR = 0.01  # distance from the edge of a shell, and from its ends, over its length: sheets are curved
+
+MIDDLE = 0.1  # distance of a bound node from the middle of its edge, over the length of the edge, at most
+
+
+def edges_of_hung(hung: Iterable[tuple[str, list[int]]], number: Mapping[int, int], points: np.ndarray,
+                  quads: Iterable[Sequence[int]]) -> dict[tuple[int, int], int]:
+    """Return the bound nodes of edges of shells by the ends of the edges, the smaller one first.
+
+    hung: place in a file, labels of a node and of the ends of its edge; number: of the points, by label.
+    """
+    edges = {(min(a, b), max(a, b)) for quad in quads for a, b in zip(quad, [*quad[1:], quad[0]])}
+    bound, places = {}, {}
+    for place, labels in hung:
+        node, *ends = (number.get(label, -1) for label in labels)
+        edge = (min(ends, default=-1), max(ends, default=-1))
+        if len(ends) != 2 or edge not in edges:
+            raise Problem(f"{place}: error: node {labels[0]} hangs between the nodes {labels[1]} and {labels[-1]}, "
+                          "which are not the ends of an edge of a shell")
+        length = float(np.linalg.norm(points[edge[1]] - points[edge[0]]))
+        away = float(np.linalg.norm(points[node] - points[list(edge)].mean(axis=0)))
+        if away > MIDDLE * length:
+            raise Problem(f"{place}: error: node {labels[0]} is {away:.3g} from the middle of the edge between the "
+                          f"nodes {labels[1]} and {labels[2]}, which is {length:.3g} long; expected at most "
+                          f"{MIDDLE:g} of its length")
+        bound[edge], places[edge] = node, (place, labels)
+    for edge in bound:
+        if set(edge) & set(bound.values()):
+            place, labels = places[edge]
+            raise Problem(f"{place}: error: node {labels[0]} hangs on an edge one end of which hangs itself; expected "
+                          "levels of neighbours that differ by one")
+    return bound
 
 
 def hanging_nodes(points: np.ndarray, cells: Sequence[Sequence[int]]) -> list[tuple[int, int]]:

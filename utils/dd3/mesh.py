@@ -26,7 +26,7 @@ from dd3.command import new_parser
 from dd3.errors import Problem
 from dd3.fields import Fields
 from dd3.gmsh_session import session
-from dd3.hanging import TOLERANCE, hanging, outer_faces
+from dd3.hanging import MIDDLE, TOLERANCE, hanging, outer_faces
 from dd3.inp.blocks import refuse
 from dd3.inp.model import Model, set_members
 from dd3.inp.scope import Element, Scope
@@ -50,7 +50,7 @@ class Mesh:
     elements: dict[int, list[int]] = field(default_factory=dict)
     node_sets: dict[str, Any] = field(default_factory=dict)
     element_sets: dict[str, Any] = field(default_factory=dict)
-    bound: list[tuple[int, int, int]] = field(default_factory=list)
+    bound: list[tuple[int, ...]] = field(default_factory=list)
     left_out: dict[str, int] = field(default_factory=dict)  # kind: number
     model: Model | None = None  # of an .inp file
 
@@ -151,6 +151,7 @@ def mesh_of(model: Model, scope: Scope) -> Mesh:
     if unused:
         model.account.enter(scope.node_places[unused[0]], f"nodes without hexahedra: {len(unused)}").leave(
             f"the first is node {unused[0]}")
+    mesh.bound = [labels for labels in scope.bound if all(label in mesh.nodes for label in labels)]
     mesh.node_sets = sets_of(model, scope, True, mesh.nodes)
     mesh.element_sets = sets_of(model, scope, False, mesh.elements)
     return mesh
@@ -207,6 +208,7 @@ def merge_nodes(mesh: Mesh, tolerance: float) -> int:
         if labels[a] not in same:
             same.setdefault(labels[b], labels[a])
     mesh.elements = {label: [same.get(node, node) for node in nodes] for label, nodes in mesh.elements.items()}
+    mesh.bound = [tuple(same.get(node, node) for node in labels) for labels in mesh.bound]
     mesh.node_sets = {name: {same.get(node, node) for node in members} for name, members in mesh.node_sets.items()}
     return len(same)
 
@@ -218,6 +220,17 @@ def check_nodes(mesh: Mesh) -> set[int]:
     if unknown:
         raise Problem(f"node {min(unknown)} of an element has no coordinates")
     return used
+
+
+def bind_middles(mesh: Mesh, labels: list[int], corners: np.ndarray, points: np.ndarray) -> None:
+    """Bind the nodes in the middle of edges of larger elements with eight nodes that are not bound yet."""
+    if not mesh.elements or any(len(nodes) != 8 for nodes in mesh.elements.values()):
+        return
+    known = {node for node, *_ in mesh.bound}
+    for (a, b), node in bound_nodes(corners, points).items():
+        away = np.linalg.norm(points[node] - (points[a] + points[b]) / 2)
+        if labels[node] not in known and away <= MIDDLE * np.linalg.norm(points[b] - points[a]):
+            mesh.bound.append((labels[node], labels[a], labels[b]))
 
 
 def check_joints(mesh: Mesh, path: Path) -> int:
@@ -234,7 +247,9 @@ def check_joints(mesh: Mesh, path: Path) -> int:
             raise Problem(f"{path}: error: node {labels[node]} is between the corners of element {element} and at a "
                           "corner of another: the sheet would tear there; expected elements with whole faces in common")
     faces, owners = outer_faces(corners)
-    found = hanging(points, faces, owners, members)
+    bind_middles(mesh, labels, corners, points)
+    bound = {number_of[node] for node, *_ in mesh.bound}
+    found = [pair for pair in hanging(points, faces, owners, members) if pair[0] not in bound]
     if found:
         node, element = found[0]
         place = " ".join(f"{value:.9g}" for value in points[node])
@@ -256,6 +271,7 @@ def renumber(mesh: Mesh) -> None:
     if len(node_of) < len(mesh.nodes):
         mesh.left_out["nodes without hexahedra"] = len(mesh.nodes) - len(node_of)
     mesh.nodes = {node_of[label]: point for label, point in mesh.nodes.items() if label in node_of}
+    mesh.bound = [tuple(node_of[label] for label in labels) for labels in mesh.bound]
     mesh.elements = {element_of[label]: [node_of[node] for node in nodes] for label, nodes in mesh.elements.items()}
     for sets, number_of in (mesh.node_sets, node_of), (mesh.element_sets, element_of):
         for name in list(sets):

@@ -21,7 +21,8 @@ PLACE = ((0, 0), (1, 1), (2, 2), (1, 2), (2, 0), (0, 1))
 class SheetState:
     """Initial and present positions of the nodes (n, 3), mm; elements (m, 8) of node numbers; the thickness, mm; stress
     tensors in global axes (m, points, 3, 3), MPa; plastic strains (m, points); axes of orthotropy as the columns of
-    (m, points, 3, 3); names of materials, and that of each element; the points of a column; sets of nodes by name."""
+    (m, points, 3, 3); names of materials, and that of each element; the points of a column; sets of nodes by name; bound
+    nodes and the ends of their edges (n, 3)."""
 
     initial: np.ndarray
     points: np.ndarray
@@ -34,6 +35,7 @@ class SheetState:
     material_of: np.ndarray
     column: int
     sets: dict[str, np.ndarray] = field(default_factory=dict)
+    bound: np.ndarray = field(default_factory=lambda: np.zeros((0, 3), int))
 
 
 def read_state(folder: Path, element: str = "solid_shell") -> SheetState:
@@ -81,6 +83,8 @@ def write_state(folder: Path, sheet: SheetState) -> None:
         mesh["x0"], state["x"] = sheet.initial.ravel(), sheet.points.ravel()
         mesh["thickness"] = np.array([sheet.thickness])
         mesh["connectivity"] = (sheet.elements + 1).ravel().astype(np.int32)
+        if len(sheet.bound):
+            mesh["bound"] = (sheet.bound + 1).ravel().astype(np.int32)
         mesh["material_of"] = (sheet.material_of + 1).astype(np.int32)
         mesh["material_digest"] = np.zeros(len(sheet.materials), np.int32)
         mesh["materials"], mesh["sets"] = codes(sheet.materials), codes(sheet.sets)

@@ -10,7 +10,7 @@ from dd3.dyna.deck import SHELL, Deck
 from dd3.dyna.laws import Units
 from dd3.dyna.mesh import Cell, Part
 from dd3.errors import Problem
-from dd3.hanging import hanging_nodes
+from dd3.hanging import edges_of_hung, hanging_nodes
 from dd3.mesh import Mesh, renumber, turn_mirrored
 
 POINTS = 7  # through the thickness, where the deck has fewer than 5
@@ -52,8 +52,9 @@ def blank_of(deck: Deck, part: Part, units: Units) -> Blank:
                       f"(part {part.number}) are no {'quadrilaterals' if corners == 4 else 'hexahedra'}; mesh it with "
                       "these alone")
     nodes = {label: np.array(deck.nodes[label]) * units.length for cell in part.cells for label in cell.nodes}
-    check_hanging(deck, part, nodes)
+    bound = bound_labels(deck, part, nodes)
     blank = of_shells(deck, part, nodes, units) if corners == 4 else of_solids(deck, part, nodes)
+    blank.mesh.bound = bound + [tuple(blank.upper[label] for label in labels) for labels in bound]
     edges = np.array([nodes[cell.nodes[1]] - nodes[cell.nodes[0]] for cell in part.cells])
     edges /= np.maximum(np.linalg.norm(edges, axis=1), 1e-300)[:, None]
     first = blank.axes[0] / max(float(np.linalg.norm(blank.axes[0])), 1e-300)
@@ -61,21 +62,22 @@ def blank_of(deck: Deck, part: Part, units: Units) -> Blank:
     return blank
 
 
-def check_hanging(deck: Deck, part: Part, nodes: dict[int, np.ndarray]) -> None:
-    """Raise a Problem at a node of one element on the edge or the face of another: nothing would bind them."""
+def bound_labels(deck: Deck, part: Part, nodes: dict[int, np.ndarray]) -> list[tuple[int, ...]]:
+    """Return the nodes of shells that *CONSTRAINED_ADAPTIVITY binds, each with the ends of its edge; raise a Problem at
+    another node of one element on the edge or the face of another: nothing would bind them."""
     labels = list(nodes)
     index = {label: i for i, label in enumerate(labels)}
-    for place, (label, *ends) in deck.hung:
-        if label in nodes:
-            raise Problem(f"{place}: error: node {label} hangs between the nodes {ends[0]} and {ends[-1]}, and hanging "
-                          "nodes are not bound here; mesh the blank with elements that share all their nodes")
-    found = hanging_nodes(np.array(list(nodes.values())),
-                          [[index[label] for label in cell.nodes] for cell in part.cells])
+    points = np.array(list(nodes.values()))
+    cells = [[index[label] for label in cell.nodes] for cell in part.cells]
+    shells = [cell for cell in cells if len(cell) == 4]
+    bound = edges_of_hung([item for item in deck.hung if item[1][0] in nodes], index, points, shells)
+    found = [pair for pair in hanging_nodes(points, cells) if pair[0] not in bound.values()]
     if found:
         node, cell = labels[found[0][0]], part.cells[found[0][1]]
         raise Problem(f"{cell.place}: error: node {node} lies on an edge or a face of element {cell.label} that does "
                       f"not have it ({len(found)} such nodes): the sheet would tear there; mesh the blank with "
-                      "elements that share all their nodes")
+                      "elements that share all their nodes, or bind it by *CONSTRAINED_ADAPTIVITY")
+    return [(labels[node], labels[a], labels[b]) for (a, b), node in bound.items()]
 
 
 def face_normals(cells: list[tuple[int, ...]], nodes: dict[int, np.ndarray]) -> np.ndarray:

@@ -55,7 +55,8 @@ class Model:
         readers: dict[str, Callable[[Block], None]] = {
             "PART": self.part, "ENDPART": self.leave, "ASSEMBLY": self.assembly, "ENDASSEMBLY": self.assembly,
             "INSTANCE": self.instance, "ENDINSTANCE": self.leave, "HEADING": self.heading, "SYSTEM": self.system,
-            "NODE": self.node, "ELEMENT": self.element, "NSET": self.set, "ELSET": self.set, "NMAP": self.refuse}
+            "NODE": self.node, "ELEMENT": self.element, "NSET": self.set, "ELSET": self.set, "MPC": self.constrain,
+            "NMAP": self.refuse}
         makers = {"NGEN": ngen, "NFILL": nfill, "NCOPY": ncopy, "ELGEN": elgen, "ELCOPY": elcopy}
         for block in blocks(self.path, self.account):
             if block.keyword in makers:
@@ -141,7 +142,7 @@ class Model:
             refuse(own.place, f"instance '{instance.name}' has a mesh beside that of its part")
         scope = Scope(instance.name, own.place, elements=source.elements)
         scope.nodes = {number: instance.placement.of(point) for number, point in source.nodes.items()}
-        scope.node_places = source.node_places
+        scope.node_places, scope.bound = source.node_places, source.bound
         for kind in "node_sets", "element_sets":
             sets = dict(getattr(part, kind)) if part is not None else {}
             for others in getattr(own, kind), getattr(instance.sets, kind):
@@ -203,6 +204,18 @@ class Model:
             number, *nodes = (label(word, place, "*ELEMENT") for word in words)
             self.scope.add_element(number, Element(kind, nodes, place, name))
             target.append(range(number, number + 1))
+
+    def constrain(self, block: Block) -> None:
+        """Add nodes that are bound to the mean of two others; other constraints are left out."""
+        block.entry.use()
+        for row in block.data():
+            kind, *words = (*filter(None, row.words), "", "")
+            nodes = [word for word in words if word]
+            if kind.upper() == "LINEAR" and len(nodes) == 3 and all(word.isdecimal() for word in nodes):
+                self.scope.bound.append(tuple(label(word, row.place, block.shown) for word in nodes))
+            else:
+                self.account.enter(row.place, f"{block.shown}, {kind}").leave(
+                    "LINEAR with the labels of three nodes is read")
 
     # ---- sets --------------------------------------------------------------------------------------------------------
 

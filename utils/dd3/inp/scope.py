@@ -98,6 +98,7 @@ class Scope:
     elements: dict[int, Element] = field(default_factory=dict)
     node_sets: dict[str, Members] = field(default_factory=dict)
     element_sets: dict[str, Members] = field(default_factory=dict)
+    bound: list[tuple[int, ...]] = field(default_factory=list)  # node, and the ends of its edge
     system: tuple[np.ndarray, np.ndarray] | None = None
 
     def place_of(self, point: Iterable[float]) -> Point:
