@@ -177,8 +177,8 @@ def test_hanging_nodes():
         assert sorted(mesh["bound"][...].reshape(-1, 3).tolist()) == [[13, 3, 5], [14, 4, 6]]
         sizes, names = mesh["set_size"][...], bytes(mesh["sets"][...].astype(np.uint8)).decode().split()
         assert sizes[names.index("rim")] == 14  # all columns but the bound one
-    for ends, message in (((2, 4), "which are not the ends of an edge"), ((2, 7), "which are not the ends of an edge"),
-                          ((7, 6), "which are not the ends")):
+    for ends, message in (((2, 4), "which are not the ends of an edge"), ((2, 7), "node 7 is 2.5 from the middle of the edge"),
+                          ((7, 6), "node 7 is 2.5 from the middle of the edge")):
         wrong = text + f"*CONSTRAINED_ADAPTIVITY\n{7:10d}{ends[0]:10d}{ends[1]:10d}\n"
         Path("wrong").write_text(wrong)
         assert message in call("dynain", "wrong", "y.out", expect=2)

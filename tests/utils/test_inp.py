@@ -287,10 +287,21 @@ HANGING = TWO.replace("2, 2, 3, 6, 5, 12, 13, 16, 15", """2, 2, 3, 21, 20, 12, 1
 
 
 def test_hanging():
-    """A node on an edge or a face of an element without it is refused with its place; unjoined nodes are told."""
-    Path("model.inp").write_text(HANGING)
+    """A node on an edge or a face of an element without it is refused with its place, but for one in the middle of an
+    edge, which is bound; unjoined nodes are told."""
+    Path("model.inp").write_text(HANGING.replace(", 1.5,", ", 1.2,"))
     said = call("mesh", "model.inp", "part.inp", expect=2)
-    assert "node 20 at 2 1.5 0 lies on an edge or a face of element 1" in said and "1 more" in said
+    assert "node 20 at 2 1.2 0 lies on an edge or a face of element 1" in said and "1 more" in said
+    Path("model.inp").write_text(HANGING)
+    call("mesh", "model.inp", "part.inp")
+    bound = Path("part.inp").read_text().split("*MPC\n")[1].splitlines()[:2]
+    assert all(line.startswith("LINEAR, ") for line in bound)
+    # The same by *MPC, also off the chord of the edge; other constraints are left out.
+    bent = HANGING.replace("20, 2, 1.5, 0", "20, 2, 1.5, 0.1").replace("22, 2, 1.5, 1", "22, 2, 1.5, 1.1")
+    Path("model.inp").write_text(bent + "\n*MPC\nLINEAR, 20, 2, 5\nBEAM, 1, 2\nLINEAR, 22, 12, 15\n")
+    said = call("mesh", "model.inp", "bent.inp")
+    assert "*MPC, BEAM: LINEAR with the labels of three nodes is read" in said
+    assert Path("bent.inp").read_text().split("*MPC\n")[1].splitlines()[:2] == bound
     # In the middle of a face: an element halved through the thickness and along y beside a whole one.
     Path("model.inp").write_text(HANGING.replace("20, 2, 1.5, 0", "20, 2, 1.5, 0.5"))
     assert "node 20 at 2 1.5 0.5" in call("mesh", "model.inp", "part.inp", expect=2)

@@ -26,7 +26,7 @@ from dd3.command import new_parser
 from dd3.errors import Problem
 from dd3.fields import Fields
 from dd3.gmsh_session import session
-from dd3.hanging import MIDDLE, TOLERANCE, hanging, outer_faces
+from dd3.hanging import TOLERANCE, hanging, outer_faces
 from dd3.inp.blocks import refuse
 from dd3.inp.model import Model, set_members
 from dd3.inp.scope import Element, Scope
@@ -38,6 +38,7 @@ NATURAL = [(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1), (-1, -1, 1), (1, 
            (0, 0, 0), (0, 0, -1), (0, 0, 1), (0, -1, 0), (1, 0, 0), (0, 1, 0), (-1, 0, 0)]
 GMSH_HEXAHEDRA = {5: 8, 17: 20, 12: 27}
 KINDS = ("point", "curve", "surface", "volume")
+MIDDLE = 0.02  # distance of a node from the middle of an edge to which it is bound by its place, over its length
 VTK_HEXAHEDRA = {12: 8, 25: 20, 29: 27}
 INP_HEXAHEDRA = re.compile(r"(?:C3D(?:8|20|27)|SC8|CSS8)[A-Z]*$")
 
