@@ -1,9 +1,10 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Bound nodes: where elements of different sizes meet, the nodes in the middle of an edge of the
 !> larger element are bound to it. Those of elements that bend are points of its surface that is
-!> curved by the directions of the columns at its ends: a mean of the two ends would miss the sag of a
-!> bent edge, and the smaller elements would shear. Edges of other elements are straight. The columns at the ends, the parents, carry the forces of a bound node by
-!> the transposed derivative of its position; a parent is not bound itself.
+!> curved by the directions of the columns at its ends: a mean of the two ends would miss the sag of
+!> a bent edge, and the smaller elements would shear. Edges of other elements are straight. The
+!> columns at the ends, the parents, carry the forces of a bound node by the transposed derivative
+!> of its position; a parent is not bound itself.
 module dd3_model_bound_nodes
   use dd3_base_kinds, only : wp
   use dd3_model_model, only : model_t

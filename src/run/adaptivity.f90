@@ -1,14 +1,14 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Adaptive refinement of the sheet in a run: which elements are divided and when.
 !>
-!> An element is divided before it comes to lie on a radius of a tool that turns by more than the angle
-!> of the input over the length of the element, as the exact surfaces of the tools tell: later the
-!> forces would change, as the length of a chord is not that of its arc. What of a tool the sheet can
-!> meet soon is near and has nearly the direction of the sheet, which must rotate to lie on the rest.
-!> As soon as an element would meet such a radius in the next part of the travel, all that would in a
-!> longer part are divided, so that the mesh changes a few times only. Where the sheet turns by more
-!> than the angle without a tool, as where it bends freely, it is divided too; an increment in which
-!> it does is made again on the finer mesh.
+!> An element is divided before it comes to lie on a radius of a tool that turns by more than the
+!> angle of the input over the length of the element, as the exact surfaces of the tools tell: later
+!> the forces would change, as the length of a chord is not that of its arc. What of a tool the
+!> sheet can meet soon is near and has nearly the direction of the sheet, which must rotate to lie
+!> on the rest. As soon as an element would meet such a radius in the next part of the travel, all
+!> that would in a longer part are divided, so that the mesh changes a few times only. Where the
+!> sheet turns by more than the angle without a tool, as where it bends freely, it is divided too;
+!> an increment in which it does is made again on the finer mesh.
 module dd3_run_adaptivity
   use dd3_base_error, only : error_list_t, error_t, fatal_error
   use dd3_base_kinds, only : pi, wp

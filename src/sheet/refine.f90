@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Refinement of a sheet: quadrilaterals are divided into four, through all layers. New columns of
 !> nodes lie on the surface curved by the directions of the columns (dd3_sheet_surface_point), in
-!> each layer, then as well as now, so that a flat blank stays flat and a bent sheet keeps its shape;
-!> those of elements without enhanced strains, whose edges stay straight, lie in the middle.
+!> each layer, then as well as now, so that a flat blank stays flat and a bent sheet keeps its
+!> shape; those of elements without enhanced strains, whose edges stay straight, lie in the middle.
 module dd3_sheet_refine
   use dd3_base_kinds, only : wp
   use dd3_element_table, only : element_t

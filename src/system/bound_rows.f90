@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Elimination of the bound nodes from the reduced system. With the displacements u_h = B u_p of a
-!> bound node by those of its parents, the columns of the node are given to the parents by B, its row
-!> and its force by B^T; the change of B under the force of the node adds to the rows of the parents.
-!> What is left is a unit row.
+!> bound node by those of its parents, the columns of the node are given to the parents by B, its
+!> row and its force by B^T; the change of B under the force of the node adds to the rows of the
+!> parents. What is left is a unit row.
 module dd3_system_bound_rows
   use dd3_base_kinds, only : wp
   use dd3_linalg_matrix, only : block_matrix_t, position_of

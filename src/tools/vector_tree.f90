@@ -1,9 +1,8 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Points of a surface with a vector each, and the largest length of a vector within a distance of a
-!> place. The
-!> points are sorted along the Z-order curve (Morton 1966); blocks of them are the leaves of a
-!> balanced tree of boxes with the largest length below each node, so that a search leaves out all
-!> that is too far or too small.
+!> place. The points are sorted along the Z-order curve (Morton 1966); blocks of them are the leaves
+!> of a balanced tree of boxes with the largest length below each node, so that a search leaves out
+!> all that is too far or too small.
 module dd3_tools_vector_tree
   use dd3_base_kinds, only : i8, wp
   use dd3_base_sorting, only : ascending
