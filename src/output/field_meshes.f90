@@ -188,7 +188,7 @@ contains
     n_mesh = int(self%last + 1, hsize_t)
     n_node = int(row_of(old, self%n_node, int(n_mesh), ok))
     n_cell = int(row_of(old, self%n_cell, int(n_mesh), ok))
-    cells = int(self%at_cell + n_cell, hsize_t)
+    cells = int(self%at_cell, hsize_t) + int(n_cell, hsize_t)
     nodes = int(row_of(old, self%n_connectivity, int(n_mesh), ok), hsize_t)
     call read_rows(old, self%connectivity%path(), int(self%at_connectivity, hsize_t), nodes, &
         node, ok)
