@@ -37,6 +37,8 @@ module dd3_mesh_mesh
     real(wp) :: thickness = 0.0_wp
     !> Number of refinements that have made the mesh.
     integer :: mesh_number = 0
+    !> Number of nodes before the first of them, which come first; not used without.
+    integer :: n_first_node = 0
     !> Times that each element has been divided, `(n_element)`; not allocated if none has.
     integer, allocatable :: level(:)
     !> Bound nodes, each in the middle of an edge of a larger element, and the nodes at the ends of

@@ -32,6 +32,8 @@ module dd3_model_mesh_data
     integer, allocatable :: connectivity(:, :)
     !> Number of refinements that have made the mesh.
     integer :: mesh_number = 0
+    !> Number of nodes before the first of them; those that divisions have made come after.
+    integer :: n_first_node = 0
     !> Times that each element has been divided, `(n_element)`; not allocated if none has.
     integer, allocatable :: level(:)
     !> Bound nodes and the nodes at the ends of their edges, `(3, n_bound)`, and their points on
@@ -76,6 +78,7 @@ module dd3_model_mesh_data
     integer, allocatable :: bead_face(:, :)
   contains
     procedure :: bound_nodes
+    procedure :: first_nodes
     procedure :: start_positions
     procedure :: thickness_at
     procedure :: largest_thickness
@@ -91,6 +94,17 @@ contains
 
     if (self%n_bound > 0) node = self%bound(1, :)
   end function bound_nodes
+
+  !> Return those of some nodes that were there before the first refinement; all if none was. A mean
+  !> over them keeps its meaning where a part of the sheet is refined.
+  pure function first_nodes(self, node) result(first)
+    class(mesh_data_t), intent(in) :: self
+    integer, intent(in) :: node(:)
+    integer, allocatable :: first(:)
+
+    first = pack(node, node <= self%n_first_node)
+    if (size(first) == 0) first = node
+  end function first_nodes
 
   !> Return the positions of the nodes at the start of the job, `(3, n_node)`, mm.
   pure function start_positions(self) result(x)

@@ -80,7 +80,31 @@ contains
     do k = 1, size(new%term)
       call new%term(k)%of%extend(model%n_node)
     end do
+    call carry_observations(old_model, model, new)
     new%external_force = external_forces(new%term, model, new%configuration_t)
   end subroutine refined_state
+
+  !> Find the faces again of which depths of tools are told; the depth in a face that is divided does
+  !> not count any more.
+  subroutine carry_observations(old_model, model, new)
+    type(model_t), intent(in) :: old_model, model
+    type(state_t), intent(inout) :: new
+
+    integer :: f, tool
+
+    do tool = 1, model%n_tool
+      associate (face => new%observed%deepest_face(tool))
+        if (face == 0) cycle
+        do f = 1, model%face%n
+          if (all(model%face%corner(:, f) == old_model%face%corner(:, face))) exit
+        end do
+        face = merge(f, 0, f <= model%face%n)
+        if (face > 0) cycle
+      end associate
+      new%observed%depth(tool) = 0.0_wp
+      new%observed%largest_depth(tool) = 0.0_wp
+      new%observed%deepest_radius(tool) = huge(1.0_wp)
+    end do
+  end subroutine carry_observations
 
 end module dd3_model_refined_state

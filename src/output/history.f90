@@ -209,23 +209,24 @@ contains
     type(state_t), intent(in) :: state
 
     real(wp), allocatable :: reaction(:, :)
+    integer, allocatable :: first(:)
     integer :: i
 
     if (any(model%history%reaction .or. model%history%moment)) &
         reaction = support_reactions(model, state)
     do i = 1, size(model%history)
+      first = model%first_nodes(model%history(i)%node)
       if (model%history(i)%displacement) then
-        call table%add_reals(mean(state%x, model%history(i)%node) &
-                             - mean(model%x0, model%history(i)%node))
+        call table%add_reals(mean(state%x, first) - mean(model%x0, first))
       end if
       if (model%history(i)%reaction) then
         call table%add_reals(sum(reaction(:, model%history(i)%node), dim=2))
       end if
-      if (model%history(i)%position) call table%add_reals(mean(state%x, model%history(i)%node))
+      if (model%history(i)%position) call table%add_reals(mean(state%x, first))
       if (model%history(i)%moment) &
-          call table%add_reals(moment(state%x, reaction, model%history(i)%node))
+          call table%add_reals(moment(state%x, reaction, model%history(i)%node, mean(state%x, first)))
       if (model%history(i)%draw_in) &
-          call table%add_real(mean_draw_in(model, state%x, model%history(i)%node))
+          call table%add_real(mean_draw_in(model, state%x, first))
     end do
   end subroutine add_set_values
 
@@ -258,17 +259,17 @@ contains
     reaction = reactions(model, state) - fading
   end function support_reactions
 
-  !> Return the moment of the support reactions of some nodes about their mean position, N.mm.
-  pure function moment(x, reaction, node)
+  !> Return the moment of the support reactions of some nodes about a point, N.mm.
+  pure function moment(x, reaction, node, centre)
     !> Positions, mm, and reactions, N, of all nodes, `(3, n_node)`.
     real(wp), intent(in) :: x(:, :), reaction(:, :)
     integer, intent(in) :: node(:)
+    !> mm.
+    real(wp), intent(in) :: centre(3)
     real(wp) :: moment(3)
 
-    real(wp) :: centre(3)
     integer :: i
 
-    centre = mean(x, node)
     moment = 0.0_wp
     do i = 1, size(node)
       moment = moment + cross(x(:, node(i)) - centre, reaction(:, node(i)))

@@ -229,16 +229,17 @@ contains
     call writer%reals("x_start", size(x), x)
   end subroutine visit_refined
 
-  !> Write levels and bound nodes, where there are any, and the number of refinements.
+  !> Write levels and bound nodes, where there are any, and the numbers of refinements and of nodes
+  !> before the first.
   subroutine visit_refinement(model, writer)
     type(model_t), intent(in) :: model
     type(writer_t), intent(inout) :: writer
 
-    integer :: number(1)
+    integer :: number(2)
     integer, allocatable :: level(:), bound(:, :)
 
-    number = model%mesh_number
-    if (model%mesh_number > 0) call writer%integers("number", 1, number)
+    number = [model%mesh_number, model%n_first_node]
+    if (model%mesh_number > 0) call writer%integers("number", 2, number)
     if (allocated(model%level)) then
       level = model%level
       call writer%integers("level", size(level), level)

@@ -188,6 +188,7 @@ contains
     if (.not. any(marked)) return
     call refine_sheet(sheet, grid, model%element, marked, refined, origin)
     refined%mesh%mesh_number = model%mesh_number + 1
+    refined%mesh%n_first_node = model%n_first_node
     old_model = model
     old = state
     sheet = refined

@@ -107,7 +107,7 @@ contains
         associate (name => case%phase(i)%load(j)%set)
           if (any([(model%load_set(s)%name == name, s=1, size(model%load_set))])) cycle
           set%name = name
-          set%node = mesh%nodes_of(name)
+          set%node = model%first_nodes(mesh%nodes_of(name))
           call face_load_weights(model%element, model%connectivity, model%x0, set%node, set%weight)
           model%load_set = [model%load_set, set]
         end associate

@@ -116,6 +116,7 @@ contains
     model%x0 = mesh%x
     model%connectivity = mesh%connectivity
     model%mesh_number = mesh%mesh_number
+    model%n_first_node = merge(mesh%n_first_node, mesh%n_node, mesh%mesh_number > 0)
     allocate (model%set(size(mesh%set)))
     do i = 1, size(mesh%set)
       model%set(i)%name = mesh%set(i)%name

@@ -188,19 +188,20 @@ contains
     end do
   end subroutine read_sets
 
-  !> Read the number of refinements, which is left out if there are none.
+  !> Read the numbers of refinements and of nodes before the first, left out if there are none.
   subroutine read_number(file, mesh, ok)
     integer(hid_t), intent(in) :: file
     type(mesh_t), intent(inout) :: mesh
     !> Success flag; no-op if false.
     logical, intent(inout) :: ok
 
-    integer :: number(1), n
+    integer :: number(2), n
 
     call dataset_size(file, "mesh/number", n)
-    if (n /= 1) return
+    if (n /= 2) return
     call read_integers(file, "mesh/number", number, ok)
     mesh%mesh_number = number(1)
+    mesh%n_first_node = number(2)
   end subroutine read_number
 
   !> Read levels and bound nodes, where there are any, and the number of refinements.
