@@ -46,7 +46,7 @@ contains
           "Give its path by `move` in the phase that releases it, or name it later."), &
       row("E207", "sheet that cannot be refined", &
           "Elements were to be divided (`adaptive`), and the mesh does not allow it.", &
-          "`--restart` with the same input, after `adaptive` was reported.")]
+          "`--restart` with `adaptive = 0`, which keeps the mesh as it is.")]
   end function surroundings
 
   !> Return the failures of elements and of the stress update.

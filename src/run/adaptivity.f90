@@ -12,11 +12,9 @@
 module dd3_run_adaptivity
   use dd3_base_error, only : error_list_t, error_t, fatal_error
   use dd3_base_kinds, only : pi, wp
-  use dd3_base_verdict, only : verdict_converged, verdict_t
   use dd3_input_case, only : case_t
   use dd3_model_edge_length, only : edge_lengths
   use dd3_model_model, only : model_t
-  use dd3_model_reactions, only : reactions
   use dd3_model_refined_state, only : refined_state, sheet_of
   use dd3_model_sheet_turn, only : turn_of_sheet, turn_of_tools_ahead
   use dd3_model_state, only : state_t

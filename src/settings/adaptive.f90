@@ -5,17 +5,14 @@ module dd3_settings_adaptive
   use dd3_base_kinds, only : wp
   implicit none
   private
-  public :: adaptive_spec_t, default_angle
-
-  !> Angle by which an element may turn, degrees.
-  real(wp), parameter :: default_angle = 15.0_wp
+  public :: adaptive_spec_t
 
   !> Settings of the refinement.
   type :: adaptive_spec_t
     !> Times that an element may be divided; 0 for no refinement.
     integer :: levels = 0
     !> Angle by which the sheet may turn over an element, degrees.
-    real(wp) :: angle = default_angle
+    real(wp) :: angle = 0.0_wp
     !> Least length of an element, mm.
     real(wp) :: size = 0.0_wp
     !> Where the input gives the levels.
