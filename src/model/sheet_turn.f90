@@ -84,19 +84,21 @@ contains
         angle = atan2(norm2(cross(a, b)), dot_product(a, b))
   end function angle_between
 
-  !> Find the largest angle by which the tools that each element can meet on either face turn over
-  !> its length, until they have moved on. All elements of a column have the same one.
-  pure subroutine turn_of_tools_ahead(model, state, field, ahead, rotation, turn)
+  !> Find the largest angle by which the tools that each of some elements can meet on either face
+  !> turn over its length, until they have moved on. All elements of a column have the same one.
+  pure subroutine turn_of_tools_ahead(model, state, field, wanted, ahead, rotation, turn)
     type(model_t), intent(in) :: model
     class(configuration_t), intent(in) :: state
     !> Of the tools, `(n_tool)`.
     type(turn_field_t), intent(in) :: field(:)
+    !> Whether an element is looked at, `(n_element)`.
+    logical, intent(in) :: wanted(:)
     !> Travel of the tools, mm.
     real(wp), intent(in) :: ahead
     !> Angle by which the sheet can rotate meanwhile, rad: what of a tool has other normals counts
     !> later.
     real(wp), intent(in) :: rotation
-    !> `(n_element)`, rad.
+    !> `(n_element)`, rad; 0 for the others.
     real(wp), intent(out) :: turn(:)
 
     type(element_columns_t) :: quad
@@ -109,6 +111,7 @@ contains
       if (.not. model%phase(state%phase)%acts(tool)) cycle
       do f = 1, size(model%contact_face)
         associate (face => model%contact_face(f))
+          if (.not. wanted(model%face%element(face))) cycle
           if (.not. all(model%member(tool, model%face%node(:, face)))) cycle
           associate (largest => of_quad(quad%of_element(model%face%element(face))))
             call raise_turn(largest, field(tool), state%placement(tool), &
@@ -117,7 +120,7 @@ contains
         end associate
       end do
     end do
-    turn = of_quad(quad%of_element)
+    turn = merge(of_quad(quad%of_element), 0.0_wp, wanted)
   end subroutine turn_of_tools_ahead
 
   !> Raise the largest turn of an element to that of a tool within a distance.

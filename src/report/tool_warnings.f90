@@ -205,7 +205,8 @@ contains
     integer :: node, pinched
 
     text = ""
-    if (model%part%n_point == count(any(model%member, dim=1))) return
+    ! The points of a face are its nodes.
+    if (size(model%face_point, 1) == size(model%face%node, 1)) return
     associate (phase => model%phase(state%phase))
       if (any(phase%pressed([a, b]))) return
       if (norm2(phase%move(:, a) - phase%move(:, b)) <= 0.0_wp) return

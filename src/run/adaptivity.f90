@@ -8,7 +8,9 @@
 !> on the rest. As soon as an element would meet such a radius in the next part of the travel, all
 !> that would in a longer part are divided, so that the mesh changes a few times only. Where the
 !> sheet turns by more than the angle without a tool, as where it bends freely, it is divided too;
-!> an increment in which it does is made again on the finer mesh.
+!> an increment in which it comes to turn by far more is made again on the finer mesh. Elements of a
+!> sheet that yields in compression, and that is not held on both faces, are divided if they are too
+!> long for its wrinkles.
 module dd3_run_adaptivity
   use dd3_base_error, only : error_list_t, error_t, fatal_error
   use dd3_base_kinds, only : pi, wp
@@ -16,6 +18,7 @@ module dd3_run_adaptivity
   use dd3_model_edge_length, only : edge_lengths
   use dd3_model_model, only : model_t
   use dd3_model_refined_state, only : refined_state, sheet_of
+  use dd3_model_sheet_compression, only : find_compressed
   use dd3_model_sheet_turn, only : turn_of_sheet, turn_of_tools_ahead
   use dd3_model_state, only : state_t
   use dd3_settings_adaptive, only : adaptive_spec_t
@@ -33,8 +36,15 @@ module dd3_run_adaptivity
   !> Travel of the tools within which a radius makes elements be divided, and that within which all
   !> are divided then, over the mean length of the undivided elements; rotation of the sheet
   !> meanwhile, over the angle.
-  real(wp), parameter :: near = 0.1_wp, ahead = 0.4_wp
-  real(wp), parameter :: near_rotation = 1.0_wp, rotation_ahead = 2.0_wp
+  real(wp), parameter :: near = 0.15_wp, ahead = 0.5_wp
+  real(wp), parameter :: near_rotation = 1.5_wp, rotation_ahead = 2.5_wp
+  !> Turns over the angle of the input: that at which the mesh is changed, while all elements above
+  !> the angle are divided then, as they come above it one after another when they are stretched
+  !> and bent; that of the sheet at which an increment is made again.
+  real(wp), parameter :: over = 1.15_wp, too_far = 1.3_wp
+  !> Length of an element above which it cannot show the wrinkles of a compressed sheet, in
+  !> thicknesses.
+  real(wp), parameter :: longest = 8.0_wp
   !> Relative difference of lengths that are equal.
   real(wp), parameter :: round_off = 1.0e-6_wp
   !> Largest number of increments made again one after another.
@@ -109,27 +119,30 @@ contains
     type(state_t), intent(in) :: state
     logical, allocatable, intent(out) :: marked(:)
 
-    logical :: free(model%n_element)
-    real(wp) :: turn(model%n_element)
+    logical, dimension(model%n_element) :: free, compressed, yielding, too_long
+    real(wp), dimension(model%n_element) :: of_sheet, of_tools
 
     allocate (marked(model%n_element), source=.false.)
     if (.not. may_refine(self, model, state)) return
     if (allocated(self%waiting)) call move_alloc(self%waiting, marked)
     free = divisible(self, model, state)
     associate (angle => self%spec%angle)
-      call turn_of_sheet(model, state%x, turn)
-      marked = marked .or. (turn > angle .and. free)
-      call turn_of_tools_ahead(model, state, self%field, near*self%length, near_rotation*angle, &
-          turn)
-      if (.not. any(marked .or. (turn > angle .and. free))) return
-      call turn_of_tools_ahead(model, state, self%field, ahead*self%length, rotation_ahead*angle, &
-          turn)
-      marked = marked .or. (turn > angle .and. free)
+      call turn_of_sheet(model, state%x, of_sheet)
+      call turn_of_tools_ahead(model, state, self%field, free, near*self%length, &
+          near_rotation*angle, of_tools)
+      call find_compressed(model, state, compressed, yielding)
+      too_long = edge_lengths(model, state%x) > longest*model%thickness
+      if (.not. any(marked .or. (free .and. (max(of_sheet, of_tools) > over*angle .or. &
+          (too_long .and. yielding))))) return
+      call turn_of_tools_ahead(model, state, self%field, free, ahead*self%length, &
+          rotation_ahead*angle, of_tools)
+      marked = marked .or. (free .and. (max(of_sheet, of_tools) > angle .or. &
+          (too_long .and. compressed)))
     end associate
   end subroutine find_marks
 
-  !> Judge a converged increment: too late if the sheet turns by more than the angle over an element
-  !> that may be divided.
+  !> Judge a converged increment: too late if the sheet turns by far more than the angle over an
+  !> element that may be divided.
   subroutine judge(self, model, trial, too_late)
     class(adaptivity_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -145,7 +158,7 @@ contains
       return
     end if
     call turn_of_sheet(model, trial%x, turn)
-    marked = turn > self%spec%angle .and. divisible(self, model, trial)
+    marked = turn > too_far*self%spec%angle .and. divisible(self, model, trial)
     too_late = any(marked)
     if (too_late) then
       self%waiting = marked

@@ -143,7 +143,7 @@ def cases():
             "exact": (exact, strip, ("punch_fz",)), "cup": (square, CUP, ("punch_fz",))}
 
 
-CUP = {"divisions": "10 10 1", "depth": "5"}
+CUP = {"divisions": "10 10 1", "levels": "0", "depth": "5"}
 
 
 @dataclass

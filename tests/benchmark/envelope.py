@@ -241,7 +241,7 @@ def strip(columns, force):
 def steel_cup(across, points, depth, travels, *places):
     """Return the problem of the square cup of steel."""
     return Job(of_file(square_cup.DECK), 0.78, square_cup_quantities(across, travels, *places),
-               {"divisions": f"{across} {across} 1", "points": points, "depth": depth})
+               {"divisions": f"{across} {across} 1", "levels": 0, "points": points, "depth": depth})
 
 
 HELD = {"holder force at the end of squeeze, N": lambda found: found.end("holder_fz", "squeeze"),
@@ -266,9 +266,9 @@ ENVELOPE = {
     "strip_2.45kN_2mm": strip(88, 35),
     "strip_2.45kN_1mm": strip(175, 35),
     "aluminium_15": Job(of_file(square_cup.ALUMINIUM), 0.81, square_cup_quantities(15, (5, 10, 20), 20),
-                        {"divisions": "15 15 1", "points": 5, "depth": 20}),
+                        {"divisions": "15 15 1", "levels": 0, "points": 5, "depth": 20}),
     "steel_15": steel_cup(15, 5, 40, (3, 5, 10, 20, 40), 20, 40),
-    "round_cup": Job(of_file(round_cup_aa6016.DECK), 1.0, ROUND, {"divisions": "8 16 1"}),
+    "round_cup": Job(of_file(round_cup_aa6016.DECK), 1.0, ROUND, {"divisions": "8 16 1", "levels": 0}),
     "steel_60": steel_cup(60, 3, 4, (1, 2, 3, 4), 4),
     "steel_30": steel_cup(30, 3, 40, (3, 5, 10, 20, 40), 20, 40),
 }

@@ -51,7 +51,7 @@ class Measured:
         program = options.parallel if processes else options.program
         words = [sys.executable, "-c", MEASURE, str(self.folder)]
         words += command(program, deck, self.folder / "results", ["--quiet", "--threads", threads],
-                         {"divisions": f"{size} {size} 1", "points": 3, "depth": depth})
+                         {"divisions": f"{size} {size} 1", "levels": 0, "points": 3, "depth": depth})
         if processes:
             words = [options.mpirun, "-n", str(processes), "--bind-to", "none", *words]
         done = subprocess.run(words, env={**os.environ, **MPI_ENVIRONMENT}, stdout=subprocess.DEVNULL, check=False)

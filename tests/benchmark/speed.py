@@ -71,7 +71,7 @@ def part_of_run(program, deck, folder, settings, arguments):
 def measure(program, deck, elements, arguments):
     """Return the row of a mesh: elements, unknowns, iterations, time of one (s), memory stated and used (MB)."""
     n = round(math.sqrt(elements / 2))
-    settings = {"divisions": f"{n} {n} 2"}
+    settings = {"divisions": f"{n} {n} 2", "levels": 0}
     checked = programs.launch(programs.command(program, deck, None, ["--check"], settings))
     size = re.search(r"(\d+) unknowns.*\nmemory: about (\d+) MB", checked.output)
     if not size:

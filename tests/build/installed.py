@@ -33,7 +33,7 @@ def check_program(prefix, folder):
     program = prefix / "bin" / "dd3imp"
     assert "dd3imp" in call([program, "--version"], folder)
     deck = prefix / "share" / "dd3imp" / "input_files" / "square_cup" / "square_cup.dat"
-    call([program, "--quiet", "--set", "divisions=4 4 1", "--set", "depth=1", "--output", folder / "cup.out", deck],
+    call([program, "--quiet", "--set", "divisions=4 4 1", "--set", "levels=0", "--set", "depth=1", "--output", folder / "cup.out", deck],
          folder)
     assert "reached the end" in (folder / "cup.out" / "job.log").read_text(encoding="utf-8")
 

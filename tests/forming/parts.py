@@ -24,12 +24,12 @@ sys.path.insert(0, str(ROOT / "tests"))
 from bench import Bench, Value, check_values  # noqa: E402
 
 # Deck, parameters, force of the holder (N).
-RUNS = {"square_cup/square_cup.dat": ({"divisions": "6 6 1", "depth": 1}, 4900),
-        "square_cup/aluminium.dat": ({"divisions": "6 6 1", "depth": 1}, 4900),
-        "round_cup/round_cup.dat": ({"divisions": "3 5 1", "pressed": 1, "held": 0.5}, 5550),
-        "round_cup_aa6016/round_cup_aa6016.dat": ({"divisions": "3 5 1", "pressed": 1, "held": 0.5}, 10000),
+RUNS = {"square_cup/square_cup.dat": ({"divisions": "6 6 1", "levels": 0, "depth": 1}, 4900),
+        "square_cup/aluminium.dat": ({"divisions": "6 6 1", "levels": 0, "depth": 1}, 4900),
+        "round_cup/round_cup.dat": ({"divisions": "3 5 1", "levels": 0, "pressed": 1, "held": 0.5}, 5550),
+        "round_cup_aa6016/round_cup_aa6016.dat": ({"divisions": "3 5 1", "levels": 0, "pressed": 1, "held": 0.5}, 10000),
         "split_ring/split_ring.dat": ({"divisions": "3 5 1", "points": 3, "pressed": 1, "held": 0.5}, 1500),
-        "rail/rail.dat": ({"divisions": "10 6 1", "points": 3, "depth": 1}, 20000)}
+        "rail/rail.dat": ({"divisions": "10 6 1", "levels": 0, "points": 3, "depth": 1}, 20000)}
 # Largest distance between a tool and that of its file, mm: far below the contact layer of 0.02 mm, whose pressure it
 # changes by a thousandth, and far above the last of the twelve digits of a file, which depend on the machine.
 SAME_TOOL = 1e-6

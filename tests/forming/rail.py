@@ -148,7 +148,7 @@ def main():
         found = {}
         for mesh in MESHES:
             folder = studies.make(options, f"{material}_{mesh.replace(' ', 'x')}", DECK,
-                                  {"divisions": f"{mesh} 1", "material": material})
+                                  {"divisions": f"{mesh} 1", "levels": 0, "material": material})
             if folder:
                 found[mesh] = Rail(folder), folder
                 jobs.append(read_job(folder))

@@ -28,8 +28,8 @@ PARTS = {"draw bending, holder 2.45 kN": ("draw_bending/draw_bending.dat", {}, 9
          "draw bending, holder 19.6 kN": ("draw_bending/draw_bending.dat", {"holder": "-280"}, 90, ""),
          "draw bending with a draw-bead": ("draw_bending/draw_bead.dat", {}, 70, ""),
          "hat": ("hat/hat.dat", {}, 70, "  gravity = 0 0 0\n"),
-         "rail, DP600": ("rail/rail.dat", {}, 50, ""),
-         "rail, DC06": ("rail/rail.dat", {"material": "dc06"}, 50, "")}
+         "rail, DP600": ("rail/rail.dat", {"divisions": "30 18 1", "levels": "0"}, 50, ""),
+         "rail, DC06": ("rail/rail.dat", {"divisions": "30 18 1", "levels": "0", "material": "dc06"}, 50, "")}
 PUNCH = "*PHASE up\n  control = punch\n  trial = 3\n  move = punch 0 0 {0}\n"
 HOLDER = "*PHASE off\n  control = holder\n  trial = 3\n  move = holder 0 0 {0}\n  release = holder\n  hold = punch\n"
 LAST = "*PHASE springback\n  unload = on\n"

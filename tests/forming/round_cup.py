@@ -116,7 +116,7 @@ def main():
     cups, efforts, jobs = {}, {}, []
     for name, material, divisions in RUNS:
         folder = studies.make(options, name.replace(" ", "_"), DECK,
-                              {"material": material, "divisions": divisions})
+                              {"material": material, "divisions": divisions, "levels": 0})
         if folder:
             cups[name], efforts[name] = Cup(folder), studies.effort(folder)
             jobs.append(read_job(folder))

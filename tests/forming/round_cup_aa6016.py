@@ -48,7 +48,8 @@ def main():
     options = studies.arguments(__doc__)
     cups, jobs, rows = {}, [], [row(name, ANGLES, np.array(heights), [""]*5) for name, heights in PUBLISHED.items()]
     for name, values in RUNS.items():
-        folder = studies.make(options, name.replace(", ", "_").replace(" ", "_"), DECK, values)
+        folder = studies.make(options, name.replace(", ", "_").replace(" ", "_"), DECK,
+                              {**values, "levels": 0})
         if folder:
             cup = cups[name] = Cup(folder, BLANK)
             jobs.append(read_job(folder))

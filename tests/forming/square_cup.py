@@ -132,7 +132,7 @@ def runs(options):
     """Make the runs; return the cups by name."""
     cups = {}
     for name, across, layers, element, points in RUNS:
-        settings = {"divisions": f"{across} {across} {layers}", "element": element}
+        settings = {"divisions": f"{across} {across} {layers}", "levels": 0, "element": element}
         if points:
             settings["points"] = points
         folder = studies.make(options, name.replace(", ", "_").replace(" ", "_"), deck_of(options, name, settings),

@@ -46,7 +46,7 @@ JOBS = ((RAIL, "auto", 0),
         ("round_cup", "petsc_mumps", 0),
         ("pressed_beside", "auto", 3))
 # Parameters of a job. Its increments at first contact follow the round-off: only its last positions are compared.
-SETTINGS = {RAIL: ("divisions=20 12 1", "points=3", "travel=3")}
+SETTINGS = {RAIL: ("divisions=20 12 1", "levels=0", "points=3", "travel=3")}
 # Case that is killed and continued, increments before it is killed, and seconds until all its ranks have ended.
 KILLED, KILLED_AFTER, GRACE = "strip_over_open_edge", 5, 30
 

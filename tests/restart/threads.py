@@ -32,7 +32,7 @@ def same_bits_of_strip(runner, work, *changes):
 def same_bits_of_cup(runner, work):
     """Compare the results of the square cup: tools curved in two directions, factorisation by fronts."""
     deck = types.SimpleNamespace(path=ROOT / "input_files" / "square_cup" / "square_cup.dat")
-    same_bits(runner, fresh(work), deck, ("divisions=23 23 1", "points=3", "depth=5"))
+    same_bits(runner, fresh(work), deck, ("divisions=23 23 1", "levels=0", "points=3", "depth=5"))
 
 
 def main():

@@ -83,7 +83,7 @@ def test_square_cup(program):
     call("import", "cup.k")
     force = []
     for name, words in (("imported", ["cup/cup.dat"]), ("own", [folder / "square_cup.dat", "--set", "divisions=16 16 1",
-                                                       "--set", "depth=8"])):
+                                                       "--set", "levels=0", "--set", "depth=8"])):
         done = subprocess.run([program, "--quiet", "--output", name, *words], capture_output=True, text=True, timeout=300,
                               check=False)
         assert done.returncode == 0, done.stderr

@@ -8,11 +8,13 @@ import numpy as np
 from dd3.errors import Problem
 from dd3.tools.blocks import read_blocks
 
-# Elements of the blank at most, about; least length of an element over the thickness, and over the radius of the
-# shoulder.
-ELEMENTS, OF_THICKNESS, OF_SHOULDER = 4000, 2.0, 0.5
+# Elements of the undivided blank at most, about; least length of these over the thickness, and over the radius of the
+# shoulder; length of the smallest elements over these two, at which an element on the shoulder turns by 14 degrees.
+ELEMENTS, OF_THICKNESS, OF_SHOULDER, SMALLEST, LEVELS = 1000, 4.0, 1.0, 0.25, 4
 # Pressure of the holder, MPa.
 PRESSURE = 2.0
+# Share of a level that is round-off.
+ROUND_OFF = 1e-9
 # Distance of the blank from the border of the flange, over the thickness.
 INSET = 2.0
 STEEL = """# Replace this by your material; dd3 identify makes one from measurements.
@@ -30,6 +32,7 @@ DECK = """# Draws {part} and releases it; tools by {command}
   tools = .             # folder of the tools
   thickness = {thickness}
   divisions = {divisions}     # elements of {length:.2g} mm
+  levels = {levels}            # which are divided where the tools are curved, down to {smallest:.2g} mm
   points = 5            # through the thickness
   depth = {travel}
   holder = {holder}     # N, {pressure:g} MPa on the flange
@@ -41,6 +44,7 @@ DECK = """# Draws {part} and releases it; tools by {command}
   origin = {origin} 0
   size = {size} ${{thickness}}
   divisions = ${{divisions}}
+  adaptive = ${{levels}}
   element = solid_shell
   thickness_points = ${{points}}
   material = {name}
@@ -94,12 +98,14 @@ def deck(options: argparse.Namespace, material: str, plan: np.ndarray, travel: f
     """Return the input file: name of the material, box of the flange in plan (2, 2), travel of the punch (mm), area of
     the flange (mm2), the command that made the tools."""
     low, high = plan[0] + INSET * options.thickness, plan[1] - INSET * options.thickness
-    length = max(OF_THICKNESS * options.thickness, OF_SHOULDER * options.shoulder,
-                 float(np.prod(high - low) / ELEMENTS)**0.5)
+    least = max(OF_THICKNESS * options.thickness, OF_SHOULDER * options.shoulder)
+    length = max(least, float(np.prod(high - low) / ELEMENTS)**0.5)
     divisions = [2 * int(np.ceil(side / length / 2)) for side in high - low]
+    levels = min(LEVELS, int(np.ceil(np.log2(length / (SMALLEST * least)) - ROUND_OFF)))
     include = f'*INCLUDE "{options.material.resolve()}"' if options.material else STEEL
     return DECK.format(part=options.source.stem, command=command, thickness=f"{options.thickness:g}",
-                       divisions=f"{divisions[0]} {divisions[1]} 1", length=length, travel=f"{travel:.6g}",
+                       divisions=f"{divisions[0]} {divisions[1]} 1", length=length,
+                       levels=levels, smallest=length / 2**levels, travel=f"{travel:.6g}",
                        holder=f"{-PRESSURE * area:.3g}", pressure=PRESSURE, material=include, name=material,
                        origin=pair(low), size=pair(high - low), middle=pair((low + high) / 2))
 

@@ -1,0 +1,71 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
+!> Elements whose sheet can wrinkle: compressed in its plane, and not held by tools on both faces.
+module dd3_model_sheet_compression
+  use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : largest_over_ranks, sum_over_ranks
+  use dd3_contact_operator, only : status_gap
+  use dd3_linalg_tensor, only : symmetric_eigen, tensor_from_kelvin
+  use dd3_model_element_columns, only : element_columns_t, new_element_columns
+  use dd3_model_model, only : model_t
+  use dd3_model_state, only : state_t
+  implicit none
+  private
+  public :: find_compressed
+
+  !> Compressive membrane stress of a compressed sheet over its difference of principal stresses,
+  !> which is 0 in tension, a half in shear and 1 in compression, and over the largest difference in
+  !> the sheet.
+  real(wp), parameter :: of_own = 0.25_wp, of_largest = 0.15_wp
+
+contains
+
+  !> Find the compressed elements that tools do not hold at all nodes of both faces of the sheet. All
+  !> elements of a column are or none is.
+  subroutine find_compressed(model, state, compressed, yielding)
+    type(model_t), intent(in) :: model
+    !> Committed state.
+    type(state_t), intent(in) :: state
+    !> Whether an element is compressed, and whether it yields there, `(n_element)`.
+    logical, intent(out) :: compressed(:), yielding(:)
+
+    type(element_columns_t) :: quad
+    !> Sums over the points of a column of elements, Kelvin, MPa.
+    real(wp), allocatable :: stress(:, :)
+    !> Least principal stress, and difference of the principal stresses.
+    real(wp), allocatable :: least(:), difference(:)
+    integer, allocatable :: plastic(:)
+    logical, allocatable :: found(:)
+    real(wp) :: values(3), vectors(3, 3)
+    integer :: touching(model%n_node), e, k
+
+    call new_element_columns(quad, model)
+    allocate (stress(6, quad%n), least(quad%n), difference(quad%n), source=0.0_wp)
+    allocate (plastic(quad%n), source=0)
+    do e = 1, size(model%part%element)
+      k = quad%of_element(model%part%element(e))
+      stress(:, k) = stress(:, k) + sum(state%sheet%stress(:, :, e), dim=2)
+      if (any(state%sheet%plastic(:, e))) plastic(k) = 1
+    end do
+    call sum_over_ranks(size(stress), stress)
+    call largest_over_ranks(size(plastic), plastic)
+    do k = 1, quad%n
+      call symmetric_eigen(tensor_from_kelvin(stress(:, k)), values, vectors)
+      least(k) = minval(values)
+      difference(k) = maxval(values) - least(k)
+    end do
+    touching = 0
+    associate (n => model%n_contact_node)
+      touching(model%contact_node(:n)) = merge(1, 0, state%contact%status(:n) /= status_gap)
+    end associate
+    call largest_over_ranks(size(touching), touching)
+    found = -least > max(of_own*difference, of_largest*maxval(difference))
+    do k = 1, quad%n
+      associate (column => model%column(:, quad%corner(:, k)))
+        if (all(touching(column(1, :)) + touching(column(2, :)) == 2)) found(k) = .false.
+      end associate
+    end do
+    compressed = found(quad%of_element)
+    yielding = compressed .and. plastic(quad%of_element) > 0
+  end subroutine find_compressed
+
+end module dd3_model_sheet_compression
