@@ -136,14 +136,13 @@ contains
       call take_restart_sheet(options%restart, case, model, error)
       if (.not. allocated(error)) call read_restart(options%restart, model, start%state, error)
     end if
-    if (.not. allocated(error)) call check_ranks(case, model, error)
+    if (.not. allocated(error)) call check_ranks(case, error)
     call share_error(error)
   end subroutine set_start
 
   !> Check that several ranks can run the job.
-  subroutine check_ranks(case, model, error)
+  subroutine check_ranks(case, error)
     type(case_t), intent(in) :: case
-    type(model_t), intent(in) :: model
     type(error_t), allocatable, intent(out) :: error
 
     character(len=16), allocatable :: expected(:)
@@ -156,12 +155,6 @@ contains
     else if (all(expected /= case%solver%method)) then
       call fatal_error(error, "method = "//case%solver%method//" of *SOLVER needs one process, "// &
           "got "//to_text(n_ranks())//"; expected one of: "//join(expected, " "), "E205")
-    else if (case%adaptive%levels > 0) then
-      call fatal_error(error, "adaptive = "//to_text(case%adaptive%levels)//" needs one "// &
-          "process, got "//to_text(n_ranks())//"; expected adaptive = 0, or one process", "E205")
-    else if (model%n_bound > 0) then
-      call fatal_error(error, "the sheet has elements of different sizes, which "// &
-          "need one process, got "//to_text(n_ranks()), "E205")
     end if
   end subroutine check_ranks
 

@@ -7,11 +7,12 @@
 !> of its position; a parent is not bound itself.
 module dd3_model_bound_nodes
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : sum_over_ranks, this_rank
   use dd3_model_model, only : model_t
   use dd3_sheet_surface_point, only : edge_point, middle_point
   implicit none
   private
-  public :: set_bound_nodes, follow_parents, give_to_parents, forces_on_bound
+  public :: set_bound_nodes, follow_parents, give_to_parents, forces_on_bound, share_bound
 
 contains
 
@@ -96,6 +97,25 @@ contains
       x(:, model%bound(1, i)) = model%bound_point(i)%position(x)
     end do
   end subroutine follow_parents
+
+  !> Give all ranks the forces on bound nodes: a parent may belong to another rank than the node.
+  subroutine share_bound(model, force)
+    type(model_t), intent(in) :: model
+    !> `(3, n_node)`, N; of several ranks each has those on its nodes.
+    real(wp), intent(inout) :: force(:, :)
+
+    real(wp) :: on_bound(3, model%n_bound)
+    integer :: i, rank
+
+    if (.not. model%part%divided .or. model%n_bound == 0) return
+    rank = this_rank()
+    on_bound = forces_on_bound(model, force)
+    do i = 1, model%n_bound
+      if (model%part%node_owner(model%bound(1, i)) /= rank) on_bound(:, i) = 0.0_wp
+    end do
+    call sum_over_ranks(size(on_bound), on_bound)
+    force(:, model%bound(1, :)) = on_bound
+  end subroutine share_bound
 
   !> Return those of nodal forces that are on bound nodes, `(3, n_bound)`.
   pure function forces_on_bound(model, force) result(on_bound)

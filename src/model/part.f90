@@ -28,6 +28,7 @@ module dd3_model_part
     integer :: n_point = 0
     integer, allocatable :: point_owner(:)
   contains
+    procedure :: divide => part_divide
     procedure :: ranks_of => part_ranks_of
     procedure :: own => part_own
     procedure :: gather => part_gather
@@ -37,41 +38,59 @@ module dd3_model_part
 
 contains
 
-  !> Divide the sheet: the nodes by their graph, each element to the rank of its first node.
-  subroutine new_part(self, n_node, connectivity)
+  !> Make the part that is the whole sheet.
+  subroutine new_part(self, n_node, n_element)
     type(part_t), intent(out) :: self
-    integer, intent(in) :: n_node
-    !> Nodes of each element, `(n_element_node, n_element)`.
+    integer, intent(in) :: n_node, n_element
+
+    integer :: e
+
+    allocate (self%node_owner(n_node), self%owner(n_element), source=0)
+    self%element = [(e, e=1, n_element)]
+    self%place = self%element
+  end subroutine new_part
+
+  !> Divide the sheet, if there are several ranks: the nodes by their graph, each element to the
+  !> rank of its first node.
+  subroutine part_divide(self, connectivity)
+    !> Whole.
+    class(part_t), intent(inout) :: self
+    !> Nodes that the forces of each element act on, its own first, `(n, n_element)`.
     integer, intent(in) :: connectivity(:, :)
 
     type(block_matrix_t) :: graph
     integer :: e
 
-    self%divided = n_ranks() > 1
-    allocate (self%node_owner(n_node), self%place(size(connectivity, 2)), source=0)
-    if (self%divided) then
-      call new_pattern(graph, n_node, connectivity)
-      call divide_rows(graph, self%node_owner)
-    end if
+    if (n_ranks() == 1) return
+    self%divided = .true.
+    call new_pattern(graph, size(self%node_owner), connectivity)
+    call divide_rows(graph, self%node_owner)
     self%owner = self%node_owner(connectivity(1, :))
     self%element = self%own(of_elements)
+    self%place = 0
     self%place(self%element) = [(e, e=1, size(self%element))]
-  end subroutine new_part
+  end subroutine part_divide
 
-  !> Whether a node is that of an element of a rank.
-  function part_holds_node(self, connectivity, rank) result(holds)
+  !> Whether a rank adds to the row of a node: it is a node of its elements, or, in a mesh with bound
+  !> nodes, of an element with a node of its own, from where rows and columns go to the parents.
+  function part_holds_node(self, connectivity, has_bound, rank) result(holds)
     class(part_t), intent(in) :: self
-    !> Of all elements, `(n_element_node, n_element)`.
+    !> Nodes that the forces of each element act on, `(n, n_element)`.
     integer, intent(in) :: connectivity(:, :)
+    !> Whether there are bound nodes.
+    logical, intent(in) :: has_bound
     integer, intent(in) :: rank
     !> `(n_node)`.
     logical, allocatable :: holds(:)
 
+    logical :: adds
     integer :: e
 
     allocate (holds(size(self%node_owner)), source=.false.)
     do e = 1, size(self%owner)
-      if (self%owner(e) == rank) holds(connectivity(:, e)) = .true.
+      adds = self%owner(e) == rank
+      if (has_bound) adds = adds .or. any(self%node_owner(connectivity(:, e)) == rank)
+      if (adds) holds(connectivity(:, e)) = .true.
     end do
   end function part_holds_node
 

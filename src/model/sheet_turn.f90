@@ -7,6 +7,7 @@
 !> tool's normal within this distance of an element is the one that it may have to follow.
 module dd3_model_sheet_turn
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : largest_over_ranks, this_rank
   use dd3_linalg_tensor, only : cross
   use dd3_model_configuration, only : configuration_t
   use dd3_model_element_columns, only : element_columns_t, n_corner, new_element_columns
@@ -85,8 +86,9 @@ contains
   end function angle_between
 
   !> Find the largest angle by which the tools that each of some elements can meet on either face
-  !> turn over its length, until they have moved on. All elements of a column have the same one.
-  pure subroutine turn_of_tools_ahead(model, state, field, wanted, ahead, rotation, turn)
+  !> turn over its length, until they have moved on. All elements of a column have the same one. Of
+  !> several ranks each looks from its elements.
+  subroutine turn_of_tools_ahead(model, state, field, wanted, ahead, rotation, turn)
     type(model_t), intent(in) :: model
     class(configuration_t), intent(in) :: state
     !> Of the tools, `(n_tool)`.
@@ -103,8 +105,9 @@ contains
 
     type(element_columns_t) :: quad
     real(wp), allocatable :: of_quad(:)
-    integer :: f, tool
+    integer :: f, tool, rank
 
+    rank = this_rank()
     call new_element_columns(quad, model)
     allocate (of_quad(quad%n), source=0.0_wp)
     do tool = 1, model%n_tool
@@ -113,6 +116,9 @@ contains
         associate (face => model%contact_face(f))
           if (.not. wanted(model%face%element(face))) cycle
           if (.not. all(model%member(tool, model%face%node(:, face)))) cycle
+          if (model%part%divided) then
+            if (model%part%owner(model%face%element(face)) /= rank) cycle
+          end if
           associate (largest => of_quad(quad%of_element(model%face%element(face))))
             call raise_turn(largest, field(tool), state%placement(tool), &
                 state%x(:, model%face%corner(:, face)), ahead*sqrt(1.0_wp + sliding**2), rotation)
@@ -120,6 +126,7 @@ contains
         end associate
       end do
     end do
+    call largest_over_ranks(size(of_quad), of_quad)
     turn = merge(of_quad(quad%of_element), 0.0_wp, wanted)
   end subroutine turn_of_tools_ahead
 

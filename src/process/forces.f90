@@ -4,7 +4,7 @@
 module dd3_process_forces
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : any_rank, largest_over_ranks, sum_over_ranks
-  use dd3_model_bound_nodes, only : forces_on_bound, give_to_parents
+  use dd3_model_bound_nodes, only : forces_on_bound, give_to_parents, share_bound
   use dd3_model_contact_layer, only : offset_factor
   use dd3_model_model, only : model_t
   use dd3_model_pressed_tools, only : tool_balance
@@ -65,12 +65,14 @@ contains
         phase => model%phase(trial%phase), force => trial%tools%force)
       contact_forces = model%own_contact_forces(trial%x, trial%contact%lambda, trial%contact%place)
       call system%partition%complete_forces(model%n_node, contact_forces)
+      call share_bound(model, contact_forces)
       problem%residual = trial%sheet%internal_force - trial%external_force
       problem%residual = problem%residual + contact_forces
       problem%contact_residual = contact%force - trial%contact%lambda
       contact_forces = model%own_contact_forces(trial%x, problem%contact_residual, &
           trial%contact%place)
       call system%partition%complete_forces(model%n_node, contact_forces)
+      call share_bound(model, contact_forces)
       problem%law_residual = problem%residual + contact_forces
       problem%bound_force = forces_on_bound(model, problem%law_residual)
       call give_to_parents(model, trial%x, problem%residual)

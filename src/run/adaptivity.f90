@@ -11,12 +11,17 @@
 !> an increment in which it comes to turn by far more is made again on the finer mesh. Elements of a
 !> sheet that yields in compression, and that is not held on both faces, are divided if they are too
 !> long for its wrinkles.
+!>
+!> Of several ranks every one refines the whole sheet, with the same marks, and then keeps its part of
+!> a new division.
 module dd3_run_adaptivity
   use dd3_base_error, only : error_list_t, error_t, fatal_error
   use dd3_base_kinds, only : pi, wp
+  use dd3_base_ranks, only : broadcast_integers
   use dd3_input_case, only : case_t
   use dd3_model_edge_length, only : edge_lengths
   use dd3_model_model, only : model_t
+  use dd3_model_redistribution, only : divide_model, move_state
   use dd3_model_refined_state, only : refined_state, sheet_of
   use dd3_model_sheet_compression, only : find_compressed
   use dd3_model_sheet_turn, only : turn_of_sheet, turn_of_tools_ahead
@@ -132,12 +137,12 @@ contains
           near_rotation*angle, of_tools)
       call find_compressed(model, state, compressed, yielding)
       too_long = edge_lengths(model, state%x) > longest*model%thickness
-      if (.not. any(marked .or. (free .and. (max(of_sheet, of_tools) > over*angle .or. &
-          (too_long .and. yielding))))) return
+      if (.not. any(agreed_marks(marked .or. (free .and. (max(of_sheet, of_tools) > over*angle &
+          .or. (too_long .and. yielding)))))) return
       call turn_of_tools_ahead(model, state, self%field, free, ahead*self%length, &
           rotation_ahead*angle, of_tools)
-      marked = marked .or. (free .and. (max(of_sheet, of_tools) > angle .or. &
-          (too_long .and. compressed)))
+      marked = agreed_marks(marked .or. (free .and. (max(of_sheet, of_tools) > angle .or. &
+          (too_long .and. compressed))))
     end associate
   end subroutine find_marks
 
@@ -158,7 +163,7 @@ contains
       return
     end if
     call turn_of_sheet(model, trial%x, turn)
-    marked = turn > too_far*self%spec%angle .and. divisible(self, model, trial)
+    marked = agreed_marks(turn > too_far*self%spec%angle .and. divisible(self, model, trial))
     too_late = any(marked)
     if (too_late) then
       self%waiting = marked
@@ -167,6 +172,18 @@ contains
       self%returns = 0
     end if
   end subroutine judge
+
+  !> Return the marks of rank 0, of what all ranks evaluate from the same data.
+  function agreed_marks(marked) result(agreed)
+    logical, intent(in) :: marked(:)
+    logical :: agreed(size(marked))
+
+    integer :: number(size(marked))
+
+    number = merge(1, 0, marked)
+    call broadcast_integers(0, size(number), number)
+    agreed = number > 0
+  end function agreed_marks
 
   !> Divide marked elements: the model and the state on the finer sheet.
   subroutine refine(self, case, marked, model, state, error)
@@ -187,7 +204,7 @@ contains
     type(refinement_t) :: origin
     type(error_list_t) :: errors
     real(wp), allocatable :: x(:, :)
-    logical :: regular
+    logical :: regular, divided
 
     sheet = sheet_of(model, state)
     call new_grid(grid, sheet%mesh, regular)
@@ -197,6 +214,11 @@ contains
     end if
     call mark_balanced(sheet%mesh, grid, self%spec%levels, marked)
     if (.not. any(marked)) return
+    divided = model%part%divided
+    if (divided) then
+      call make_whole(case, model, state)
+      sheet = sheet_of(model, state)
+    end if
     call refine_sheet(sheet, grid, model%element, marked, refined, origin)
     refined%mesh%mesh_number = model%mesh_number + 1
     refined%mesh%n_first_node = model%n_first_node
@@ -215,6 +237,33 @@ contains
       return
     end if
     call refined_state(old_model, old, model, refined, origin, state)
+    if (.not. divided) return
+    old_model = model
+    call divide_model(model)
+    old = state
+    call move_state(old_model, old, model, state)
   end subroutine refine
+
+  !> Make a divided model and its state whole on every rank.
+  subroutine make_whole(case, model, state)
+    type(case_t), intent(in) :: case
+    type(model_t), intent(inout) :: model
+    type(state_t), intent(inout) :: state
+
+    type(error_list_t) :: none
+    type(model_t) :: part
+    type(state_t) :: of_part
+    type(sheet_t) :: sheet
+
+    part = model
+    of_part = state
+    sheet = sheet_of(model, state)
+    sheet%mesh%mesh_number = model%mesh_number
+    sheet%mesh%n_first_node = model%n_first_node
+    sheet%x = model%start_positions()
+    ! It has been built on this sheet before.
+    call rebuild_model(model, case, sheet, none)
+    call move_state(part, of_part, model, state)
+  end subroutine make_whole
 
 end module dd3_run_adaptivity

@@ -8,10 +8,10 @@ module dd3_setup_model
   use dd3_input_case, only : case_t
   use dd3_mesh_inp_mesh, only : new_inp_mesh
   use dd3_mesh_mesh, only : mesh_t
-  use dd3_model_contact_points, only : keep_own_points
   use dd3_model_fingerprint, only : sheet_digests
   use dd3_model_internal_variables, only : new_variables
   use dd3_model_model, only : model_t
+  use dd3_model_redistribution, only : divide_model
   use dd3_setup_checks, only : check_solver, check_start, check_supports
   use dd3_setup_element, only : set_element
   use dd3_setup_materials, only : new_materials
@@ -47,9 +47,9 @@ contains
     end if
   end subroutine new_model
 
-  !> Build a model anew on another sheet, at any state of a run. It may be used if the list holds no
-  !> error. The sheet has its positions at the start of the job, and all node sets of the model, those
-  !> of the sheet itself first.
+  !> Build a model anew on another sheet, at any state of a run, not divided among the ranks. It may
+  !> be used if the list holds no error. The sheet has its positions at the start of the job, and all
+  !> node sets of the model, those of the sheet itself first.
   subroutine rebuild_model(model, case, sheet, errors)
     !> Built from the same case.
     type(model_t), intent(inout) :: model
@@ -61,7 +61,6 @@ contains
 
     if (.not. allocated(model%first_digest)) model%first_digest = sheet_digests(model)
     call set_on_sheet(model, case, sheet, size(case%start) > 0, errors)
-    if (errors%count == 0) call keep_own_points(model)
   end subroutine rebuild_model
 
   !> Build the model; see `new_model`.
@@ -102,7 +101,7 @@ contains
     if (.not. allocated(model%history)) return
     call check_start(model, case, errors)
     call check_supports(model, case, errors)
-    call keep_own_points(model)
+    call divide_model(model)
   end subroutine build
 
   !> Join the lines of the title.

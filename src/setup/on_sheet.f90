@@ -123,7 +123,7 @@ contains
       model%set(i)%node = mesh%set(i)%node
     end do
     model%material_of = mesh%material
-    call new_part(model%part, mesh%n_node, mesh%connectivity)
+    call new_part(model%part, mesh%n_node, mesh%n_element)
     call set_columns(model)
     if (allocated(mesh%level)) model%level = mesh%level
     call set_bound_nodes(model, mesh%bound)

@@ -7,6 +7,7 @@ module dd3_setup_restart_sheet
   use dd3_input_case, only : case_t
   use dd3_mesh_mesh, only : mesh_set_t
   use dd3_model_model, only : model_t
+  use dd3_model_redistribution, only : divide_model
   use dd3_setup_model, only : rebuild_model
   use dd3_setup_sheet_file, only : read_restart_sheet
   use dd3_sheet_sheet, only : sheet_t
@@ -36,7 +37,10 @@ contains
     if (names == "") call sort_sets(sheet, model, names)
     if (names == "") then
       call rebuild_model(model, case, sheet, errors)
-      if (errors%count == 0) return
+      if (errors%count == 0) then
+        call divide_model(model)
+        return
+      end if
       call fatal_error(error, "'"//path//"': the input does not fit its refined sheet: "// &
           errors%item(1)%message, "E204")
     else

@@ -2,10 +2,12 @@
 !> Elimination of the bound nodes from the reduced system. With the displacements u_h = B u_p of a
 !> bound node by those of its parents, the columns of the node are given to the parents by B, its
 !> row and its force by B^T; the change of B under the force of the node adds to the rows of the
-!> parents. What is left is a unit row.
+!> parents. What is left is a unit row. Of several ranks each does so with what it has added itself,
+!> and the rank of the node adds what is there once.
 module dd3_system_bound_rows
   use dd3_base_kinds, only : wp
   use dd3_linalg_matrix, only : block_matrix_t, position_of
+  use dd3_linalg_partition, only : holds_row
   use dd3_linalg_tensor, only : identity
   use dd3_model_model, only : model_t
   use dd3_sheet_surface_point, only : most_point_nodes, surface_point_t
@@ -17,7 +19,7 @@ contains
 
   !> Give the rows and columns of the bound nodes to their parents.
   subroutine eliminate_bound_nodes(matrix, rhs, model, x, force)
-    !> With the contributions of the elements, the terms and the contact points.
+    !> With the contributions of the elements, the terms and the contact points of this rank.
     type(block_matrix_t), intent(inout) :: matrix
     real(wp), intent(inout) :: rhs(:)
     type(model_t), intent(in) :: model
@@ -36,7 +38,8 @@ contains
     do i = 1, model%n_bound
       call model%bound_point(i)%gradient(x, b)
       call give_row(matrix, rhs, model%bound(1, i), model%bound_point(i), b)
-      call add_change(matrix, model%bound_point(i), x, force(:, i))
+      if (holds_row(matrix, model%bound(1, i))) &
+          call add_change(matrix, model%bound_point(i), x, force(:, i))
     end do
   end subroutine eliminate_bound_nodes
 
@@ -64,7 +67,7 @@ contains
     end do
   end subroutine give_columns
 
-  !> Give the row of a node to its parents, and leave a unit row.
+  !> Give the row of a node to its parents, and leave a unit row on its rank.
   subroutine give_row(matrix, rhs, node, point, b)
     type(block_matrix_t), intent(inout) :: matrix
     real(wp), intent(inout) :: rhs(:)
@@ -87,7 +90,7 @@ contains
     rhs(3*node - 2:3*node) = 0.0_wp
     if (matrix%diagonal(node) == 0) return
     matrix%value(:, :, matrix%row_start(node):matrix%row_start(node + 1) - 1) = 0.0_wp
-    matrix%value(:, :, matrix%diagonal(node)) = identity
+    if (holds_row(matrix, node)) matrix%value(:, :, matrix%diagonal(node)) = identity
   end subroutine give_row
 
   !> Add the derivative of the forces on the parents of a constant force on a bound node.

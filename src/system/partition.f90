@@ -26,8 +26,8 @@ module dd3_system_partition
 
 contains
 
-  !> Return the rows that this rank holds: those of its nodes and of the nodes of its elements, and
-  !> those of the pressed tools, to which all ranks add.
+  !> Return the rows that this rank holds: those of its nodes and of the nodes to whose rows it adds,
+  !> and those of the pressed tools, to which all ranks add.
   function rows_held(model, n_row) result(held)
     type(model_t), intent(in) :: model
     integer, intent(in) :: n_row
@@ -40,7 +40,8 @@ contains
     if (.not. model%part%divided) return
     rank = this_rank()
     held(:model%n_node) = model%part%node_owner == rank
-    held(:model%n_node) = held(:model%n_node) .or. model%part%holds_node(model%coupling, rank)
+    held(:model%n_node) = held(:model%n_node) .or. &
+        model%part%holds_node(model%coupling, model%n_bound > 0, rank)
   end function rows_held
 
   !> Find the rows to be exchanged.
@@ -56,9 +57,9 @@ contains
     self%received%start = [1]
     allocate (self%sent%item(0), self%received%item(0))
     this = this_rank()
-    mine = model%part%holds_node(model%coupling, this)
+    mine = model%part%holds_node(model%coupling, model%n_bound > 0, this)
     do rank = 0, n_ranks() - 1
-      theirs = model%part%holds_node(model%coupling, rank)
+      theirs = model%part%holds_node(model%coupling, model%n_bound > 0, rank)
       associate (owner => model%part%node_owner)
         call add_list(self%sent, mine .and. owner == rank .and. rank /= this)
         call add_list(self%received, theirs .and. owner == this .and. rank /= this)
