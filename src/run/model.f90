@@ -263,6 +263,7 @@ contains
           trim(merge(", before one that is made again", repeat(" ", 31), again))// &
           ": "//to_text(before)//" to "//to_text(model%n_element)//" elements; forces out of "// &
           "balance "//to_text(100.0_wp*imbalance, 2)//" % of the internal forces")
+      if (model%part%divided) call log%note(model%part%report())
     end do
   end subroutine adapt
 

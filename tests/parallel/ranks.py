@@ -7,6 +7,7 @@
 """
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -21,6 +22,8 @@ from dd3.tables import read_table
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CASES, RAIL = ROOT / "tests" / "cases", ROOT / "input_files" / "rail" / "laid.dat"
+CUP, BENT = ROOT / "input_files" / "square_cup" / "square_cup.dat", pathlib.Path(__file__).with_name("bent.dat")
+DRAWN, BOUND = ROOT / "tests" / "restart" / "refined.dat", CASES / "bound_nodes" / "bending.dat"
 # Largest difference of a column of history.csv, and of a component of the last state, as a fraction of its scale.
 TOLERANCE = 1e-5
 # Values of a column or a component, mm, N, MPa or mJ, below which they are round-off.
@@ -34,7 +37,8 @@ COMPONENTS = ("x", "stress", "internal_variables", "orientation", "lambda", "too
 ENVIRONMENT = {**os.environ, **MPI_ENVIRONMENT, "PETSC_OPTIONS": "-dd3_petsc_mumps_mat_mumps_icntl_14 -60"}
 # Case, linear solver, exit code: a sheet that sags and is badly conditioned, with cut-backs; draw-beads; enhanced
 # strains; a pressed tool; cut-backs at an open edge; an early end of a phase; an iterative solver; factors on the disk;
-# a run that stops.
+# elements of different sizes; elements divided in the run, once or twice, with a pressed tool, and with increments made
+# again, also with an iterative solver; a run that stops.
 JOBS = ((RAIL, "auto", 0),
         ("drawbead_strip", "auto", 0),
         ("squeeze_solid_shell", "auto", 0),
@@ -44,11 +48,21 @@ JOBS = ((RAIL, "auto", 0),
         ("squeeze_solid_shell", "petsc_gamg", 0),
         ("round_cup", "petsc_gamg", 0),
         ("round_cup", "petsc_mumps", 0),
+        (BOUND, "auto", 0),
+        (CUP, "auto", 0),
+        (DRAWN, "auto", 0),
+        (BENT, "auto", 0),
+        (BENT, "petsc_gamg", 0),
         ("pressed_beside", "auto", 3))
-# Parameters of a job. Its increments at first contact follow the round-off: only its last positions are compared.
-SETTINGS = {RAIL: ("divisions=20 12 1", "levels=0", "points=3", "travel=3")}
-# Case that is killed and continued, increments before it is killed, and seconds until all its ranks have ended.
-KILLED, KILLED_AFTER, GRACE = "strip_over_open_edge", 5, 30
+# Parameters of a job.
+SETTINGS = {RAIL: ("divisions=20 12 1", "levels=0", "points=3", "travel=3"),
+            CUP: ("divisions=8 8 1", "points=3", "levels=2", "depth=14"), BOUND: ("angle=40",)}
+# Its increments at first contact follow the round-off: only its last positions are compared.
+LOOSE = (RAIL,)
+# Jobs in which elements are divided after the first increment.
+REFINED = (CUP, DRAWN, BENT)
+# Cases that are killed and continued, with the increments before; seconds until all ranks have ended.
+KILLED, GRACE = (("strip_over_open_edge", 5), (BENT, 9)), 30
 
 
 class Difference(Exception):
@@ -60,8 +74,9 @@ class Runs:
 
     def __init__(self, options, name, method, restart="off"):
         path = name if isinstance(name, pathlib.Path) else CASES / name / "case.dat"
-        self.options, self.settings = options, SETTINGS.get(name, ())
-        self.work = options.work / f"{path.parent.name}_{method}_{restart.replace(' ', '_')}"
+        self.options, self.settings, self.loose = options, SETTINGS.get(name, ()), name in LOOSE
+        title = path.parent.name if path.stem == "case" else f"{path.parent.name}_{path.stem}"
+        self.work = options.work / f"{title}_{method}_{restart.replace(' ', '_')}"
         self.work.mkdir(parents=True)
         self.deck = self.work / "deck.dat"
         text = f"*INCLUDE {path}\n*SOLVER\n  method = {method}\n"
@@ -144,14 +159,22 @@ def check(options, name, method, code):
     """Run a case serially and on each number of ranks, and compare."""
     runs = Runs(options, name, method, "every 1000")
     serial, _ = runs.run(0, "serial", code)
+    if name in REFINED and not refined_within(serial):
+        raise Difference("no element was divided after the first increment")
     for ranks in options.ranks:
         folder, printed = runs.run(ranks, str(ranks), code)
         if printed.count("dd3imp: stopped") != (code == 3):
             raise Difference(f"{ranks} ranks printed:\n{printed}")
-        if runs.settings:
+        if runs.loose:
             compare_states(folder / "restart.h5", serial / "restart.h5", ("x",))
         else:
             compare(folder, serial)
+
+
+def refined_within(folder):
+    """Whether elements were divided after the first increment."""
+    log = (folder / "job.log").read_text(encoding="utf-8")
+    return any(int(number) > 0 for number in re.findall(r"refined after increment (\d+)", log))
 
 
 def increment_of(restart):
@@ -176,14 +199,14 @@ def ranks_of(parent, program):
     return sorted(found)
 
 
-def killed(options, first, later):
+def killed(options, name, increments, first, later):
     """Kill one rank of a run; then continue it on another number of ranks."""
-    runs = Runs(options, KILLED, "auto", "every 1")
+    runs = Runs(options, name, "auto", "every 1")
     serial, _ = runs.run(0, "serial")
     folder = runs.work / "killed"
     with subprocess.Popen(runs.words(first, folder.name), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                           env=ENVIRONMENT) as child:
-        while child.poll() is None and increment_of(folder / "restart.h5") < KILLED_AFTER:
+        while child.poll() is None and increment_of(folder / "restart.h5") < increments:
             time.sleep(0.01)
         if child.poll() is not None:
             raise Difference("the run ended before it was killed")
@@ -229,7 +252,8 @@ def main():
     shutil.rmtree(options.work, ignore_errors=True)
     tests = [(f"{getattr(name, 'stem', name)}, {method}", check, (name, method, code)) for name, method, code in JOBS]
     tests += [("initial state", initial, ("round_cup", 3))]
-    tests += [("a killed rank, then 3 ranks and a serial run", killed, (2, (3, 0)))]
+    tests += [(f"{getattr(name, 'stem', name)}, a killed rank, then 3 ranks and a serial run", killed,
+               (name, increments, 2, (3, 0))) for name, increments in KILLED]
     failed = 0
     for title, test, arguments in tests:
         try:

@@ -37,7 +37,7 @@ contains
     model%n_node = model%element%n_node
     allocate (model%connectivity(model%n_node, 1))
     model%connectivity(:, 1) = [(a, a=1, model%n_node)]
-    call new_part(model%part, model%n_node, model%connectivity)
+    call new_part(model%part, model%n_node, model%n_element)
     allocate (model%x0(3, model%n_node))
     model%x0(1, :) = 0.5_wp*length*model%element%node(1, :)
     model%x0(2, :) = model%element%node(2, :)

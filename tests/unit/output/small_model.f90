@@ -79,7 +79,7 @@ contains
         end associate
       end do
     end do
-    call new_part(model%part, model%n_node, model%connectivity)
+    call new_part(model%part, model%n_node, model%n_element)
     call set_columns(model)
     call set_rim(model)
     criterion%name = "von_mises"
