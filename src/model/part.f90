@@ -71,8 +71,9 @@ contains
     self%place(self%element) = [(e, e=1, size(self%element))]
   end subroutine part_divide
 
-  !> Whether a rank adds to the row of a node: it is a node of its elements, or, in a mesh with bound
-  !> nodes, of an element with a node of its own, from where rows and columns go to the parents.
+  !> Whether a rank adds to the row of a node: it is a node of its elements, or, in a mesh with
+  !> bound nodes, of an element with a node of its own, from where rows and columns go to the
+  !> parents.
   function part_holds_node(self, connectivity, has_bound, rank) result(holds)
     class(part_t), intent(in) :: self
     !> Nodes that the forces of each element act on, `(n, n_element)`.

@@ -12,8 +12,8 @@
 !> sheet that yields in compression, and that is not held on both faces, are divided if they are too
 !> long for its wrinkles.
 !>
-!> Of several ranks every one refines the whole sheet, with the same marks, and then keeps its part of
-!> a new division.
+!> Of several ranks every one refines the whole sheet, with the same marks, and then keeps its part
+!> of a new division.
 module dd3_run_adaptivity
   use dd3_base_error, only : error_list_t, error_t, fatal_error
   use dd3_base_kinds, only : pi, wp

@@ -26,8 +26,8 @@ module dd3_system_partition
 
 contains
 
-  !> Return the rows that this rank holds: those of its nodes and of the nodes to whose rows it adds,
-  !> and those of the pressed tools, to which all ranks add.
+  !> Return the rows that this rank holds: those of its nodes and of the nodes to whose rows it
+  !> adds, and those of the pressed tools, to which all ranks add.
   function rows_held(model, n_row) result(held)
     type(model_t), intent(in) :: model
     integer, intent(in) :: n_row
