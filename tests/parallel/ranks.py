@@ -55,7 +55,7 @@ JOBS = ((RAIL, "auto", 0),
         (BENT, "petsc_gamg", 0),
         ("pressed_beside", "auto", 3))
 # Parameters of a job.
-SETTINGS = {RAIL: ("divisions=20 12 1", "points=3", "travel=3"),
+SETTINGS = {RAIL: ("divisions=20 12 1", "levels=0", "points=3", "travel=3"),
             CUP: ("divisions=5 5 1", "points=3", "levels=2", "depth=15"), BOUND: ("angle=40",)}
 # Its increments at first contact follow the round-off: only its last positions are compared.
 LOOSE = (RAIL,)
