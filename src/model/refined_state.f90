@@ -78,7 +78,7 @@ contains
         strain)
     new%start%plastic_strain = strain(1, :, :)
     do k = 1, size(new%term)
-      call new%term(k)%of%extend(model%n_node)
+      call new%term(k)%of%extend(old_model, model, new%configuration_t)
     end do
     call carry_observations(old_model, model, new)
     new%external_force = external_forces(new%term, model, new%configuration_t)

@@ -50,7 +50,7 @@ contains
     type(model_t), intent(in) :: model
     type(system_t), intent(inout) :: system
     type(state_t), intent(inout) :: state
-    !> Norm of the forces out of balance over that of the internal forces.
+    !> Norm of the forces out of balance over that of the internal forces; 0 without these.
     real(wp), intent(out) :: imbalance
     !> Set if an element is inverted.
     type(error_t), allocatable, intent(out) :: error
@@ -61,8 +61,10 @@ contains
     call set_internal_forces(model, system, state, error)
     if (allocated(error)) return
     force = reactions(model, state)
-    imbalance = norm2(pack(force, .not. model%phase(state%phase)%prescribed)) &
-        /max(norm2(state%sheet%internal_force), tiny(1.0_wp))
+    associate (internal => norm2(state%sheet%internal_force))
+      if (internal > 0.0_wp) imbalance = norm2(pack(force, &
+          .not. model%phase(state%phase)%prescribed))/internal
+    end associate
   end subroutine take_up
 
   !> Set stresses that the materials allow, and the internal forces.

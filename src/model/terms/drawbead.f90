@@ -35,6 +35,7 @@ module dd3_model_terms_drawbead
     real(wp) :: stiffness = 0.0_wp
   contains
     procedure :: length
+    procedure :: means
     procedure :: restrain
     procedure :: sliding_stiffness
   end type drawbead_t
@@ -93,6 +94,41 @@ contains
     length = sum(norm2(self%line(:, 2, :) - self%line(:, 1, :), dim=1))
   end function length
 
+  !> Return the means over the intervals of values that are constant in those of the same line with
+  !> others.
+  pure function means(self, other, values)
+    class(drawbead_t), intent(in) :: self
+    type(drawbead_t), intent(in) :: other
+    !> Of the intervals of `other`.
+    real(wp), intent(in) :: values(:)
+    real(wp) :: means(size(self%line, 3))
+
+    ! Both lines are divided at their vertices: the lengths to the ends of the intervals are places
+    ! of one line.
+    real(wp) :: from(size(self%line, 3) + 1), other_from(size(values) + 1)
+    integer :: i
+
+    from = lengths_to(self)
+    other_from = lengths_to(other)
+    do i = 1, size(means)
+      means(i) = sum(values*max(0.0_wp, min(from(i + 1), other_from(2:)) &
+          - max(from(i), other_from(:size(values)))))/(from(i + 1) - from(i))
+    end do
+  end function means
+
+  !> Return the lengths of the line up to the start of each interval, and the whole, mm.
+  pure function lengths_to(self) result(place)
+    class(drawbead_t), intent(in) :: self
+    real(wp) :: place(size(self%line, 3) + 1)
+
+    integer :: i
+
+    place(1) = 0.0_wp
+    do i = 1, size(self%line, 3)
+      place(i + 1) = place(i) + norm2(self%line(:, 2, i) - self%line(:, 1, i))
+    end do
+  end function lengths_to
+
   !> Evaluate the restraining force after a slip. Beyond the elastic slip, trial force less
   !> stiffness times sliding is the limit at the new path: linear in each interval of the table.
   pure subroutine restrain(self, start_force, start_path, slip, force, path, stiffness)
@@ -113,7 +149,7 @@ contains
     trial = abs(force)
     do
       call limit_at(self, path, limit, slope, next)
-      if (trial <= limit) return
+      if (.not. trial > limit) return  ! of no number too
       slide = (trial - limit)/(self%stiffness + slope)
       stiffness = self%stiffness*slope/(self%stiffness + slope)
       if (path + slide <= next) exit

@@ -398,17 +398,37 @@ contains
         row = [row, [(self%restraint(b), self%length(b), b=1, size(self%length))], self%work]
   end subroutine values
 
-  !> Extend the nodal values by those of new nodes.
-  subroutine extend(self, n_node)
+  !> Extend the nodal values by those of new nodes, and carry force and path over to the intervals,
+  !> which are as long as the elements.
+  subroutine extend(self, old_model, model, state)
     class(drawbeads_t), intent(inout) :: self
-    integer, intent(in) :: n_node
+    type(model_t), intent(in) :: old_model, model
+    type(configuration_t), intent(in) :: state
 
     if (size(self%load) == 0) return
-    self%load = extended(self%load, n_node)
+    self%load = extended(self%load, model%n_node)
+    self%force = on_intervals(old_model, model, self%force)
+    self%path = on_intervals(old_model, model, self%path)
     deallocate (self%point)
     allocate (self%point(0))
     call self%keep()
   end subroutine extend
+
+  !> Return values of the intervals of all beads on those of a refined sheet.
+  pure function on_intervals(old_model, model, old) result(new)
+    type(model_t), intent(in) :: old_model, model
+    real(wp), intent(in) :: old(:)
+    real(wp), allocatable :: new(:)
+
+    integer :: b
+
+    allocate (new(0))
+    do b = 1, size(model%drawbead)
+      associate (from => old_model%drawbead(b), to => model%drawbead(b))
+        new = [new, to%means(from, old(from%offset + 1:from%offset + size(from%line, 3)))]
+      end associate
+    end do
+  end function on_intervals
 
   !> Pass the components to a visitor.
   subroutine walk(self, visitor)

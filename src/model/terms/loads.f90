@@ -46,6 +46,7 @@ module dd3_model_terms_loads
     procedure :: magnitude
     procedure :: extend
     procedure :: walk
+    procedure, private :: set_laying
     procedure, private :: lays_down
     procedure, private :: laying_forces
   end type loads_t
@@ -133,7 +134,7 @@ contains
     integer, intent(in) :: number
     type(configuration_t), intent(in) :: state
 
-    integer :: i, s
+    integer :: s
 
     self%start = self%now
     self%final = model%phase(number)%loads%final
@@ -144,13 +145,25 @@ contains
         if (.not. is_free(model, number, state%x)) cycle
         from = to
         self%now(:, s) = to
-        do i = 1, size(set%node)
-          self%laying(:, set%node(i)) = set%weight(i)*to
-        end do
+        call self%set_laying(set, s)
       end associate
     end do
     self%laying_left = self%laying
   end subroutine begin_phase
+
+  !> Set the forces that carry the weight at the start of the phase.
+  pure subroutine set_laying(self, set, number)
+    class(loads_t), intent(inout) :: self
+    !> The weight, and its number.
+    type(load_set_t), intent(in) :: set
+    integer, intent(in) :: number
+
+    integer :: i
+
+    do i = 1, size(set%node)
+      self%laying(:, set%node(i)) = set%weight(i)*self%start(:, number)
+    end do
+  end subroutine set_laying
 
   !> Whether the sheet is laid down in the running phase.
   pure logical function is_laid_down(terms)
@@ -265,13 +278,23 @@ contains
     magnitude = maxval([0.0_wp, norm2(self%start, dim=1), norm2(self%final, dim=1)])
   end function magnitude
 
-  !> Extend the nodal values by those of new nodes.
-  subroutine extend(self, n_node)
+  !> Distribute what lays the sheet down by the masses of the nodes of the refined sheet, as its weight.
+  subroutine extend(self, old_model, model, state)
     class(loads_t), intent(inout) :: self
-    integer, intent(in) :: n_node
+    type(model_t), intent(in) :: old_model, model
+    type(configuration_t), intent(in) :: state
 
-    self%laying = extended(self%laying, n_node)
-    self%laying_left = extended(self%laying_left, n_node)
+    integer :: s
+    logical :: laid_down
+
+    laid_down = self%lays_down()
+    self%laying = extended(self%laying, model%n_node)
+    self%laying_left = extended(self%laying_left, model%n_node)
+    if (.not. laid_down) return
+    do s = 1, size(model%load_set)
+      if (model%load_set(s)%name == gravity_name) call self%set_laying(model%load_set(s), s)
+    end do
+    self%laying_left = laying_factor(state%progress)*self%laying_forces(model, state)
   end subroutine extend
 
   !> Pass the components to a visitor.

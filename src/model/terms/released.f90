@@ -219,13 +219,14 @@ contains
   end function magnitude
 
   !> Extend the nodal values by those of new nodes.
-  subroutine extend(self, n_node)
+  subroutine extend(self, old_model, model, state)
     class(released_t), intent(inout) :: self
-    integer, intent(in) :: n_node
+    type(model_t), intent(in) :: old_model, model
+    type(configuration_t), intent(in) :: state
 
-    self%start = extended(self%start, n_node)
-    self%left = extended(self%left, n_node)
-    self%tool = [self%tool, spread(0, 1, n_node - size(self%tool))]
+    self%start = extended(self%start, model%n_node)
+    self%left = extended(self%left, model%n_node)
+    self%tool = [self%tool, spread(0, 1, model%n_node - old_model%n_node)]
   end subroutine extend
 
   !> Pass the components to a visitor.

@@ -169,10 +169,15 @@ contains
     real(wp), allocatable, intent(inout) :: row(:)
   end subroutine values
 
-  !> Extend what the term has for each node by nodes that are new in a refined sheet, without forces.
-  subroutine extend(self, n_node)
+  !> Carry over what the term has for each node, or for parts of the mesh, to a refined sheet; new
+  !> nodes have no forces if the term does not distribute them anew.
+  subroutine extend(self, old_model, model, state)
     class(term_t), intent(inout) :: self
-    integer, intent(in) :: n_node
+    type(model_t), intent(in) :: old_model
+    !> On the refined sheet.
+    type(model_t), intent(in) :: model
+    !> On the refined sheet, but for its forces.
+    type(configuration_t), intent(in) :: state
   end subroutine extend
 
   !> Return values of nodes with zeros for those that are new.

@@ -199,13 +199,14 @@ contains
   end function dissipated
 
   !> Extend the nodal values by those of new nodes.
-  subroutine extend(self, n_node)
+  subroutine extend(self, old_model, model, state)
     class(viscous_t), intent(inout) :: self
-    integer, intent(in) :: n_node
+    type(model_t), intent(in) :: old_model, model
+    type(configuration_t), intent(in) :: state
 
-    if (allocated(self%before)) self%before = extended(self%before, n_node)
+    if (allocated(self%before)) self%before = extended(self%before, model%n_node)
     if (allocated(self%coefficient)) self%coefficient = &
-        [self%coefficient, spread(0.0_wp, 1, n_node - size(self%coefficient))]
+        [self%coefficient, spread(0.0_wp, 1, model%n_node - old_model%n_node)]
   end subroutine extend
 
   !> Pass the components to a visitor.
