@@ -196,6 +196,8 @@ module dd3_input_case
     real(wp), allocatable :: table(:)
     !> Position in `case%tool` of the tool that carries it; 0 for none.
     integer :: tool = 0
+    !> Number of the phase from which it acts.
+    integer :: from = 1
     type(block_t) :: source
   end type drawbead_spec_t
 

@@ -111,6 +111,7 @@ contains
     do i = 1, size(at)
       call fill_drawbead(case%drawbead(i), deck%block(at(i)))
       case%drawbead(i)%tool = position(deck, "tool", deck%block(at(i))%word("tool"))
+      case%drawbead(i)%from = max(1, position(deck, "phase", deck%block(at(i))%word("from")))
     end do
     at = positions(deck, "boundary")
     allocate (case%boundary(size(at)))

@@ -178,7 +178,9 @@ contains
       row("table", kind_reals, "mm", "-", "path across the bead and factor on force, in pairs "// &
           "from 0 on, in place of rise", count=0, lower=zero), &
       row("normal", kind_real, "N/mm", "0", "force on the sheet along z per length of the line"), &
-      row("tool", kind_name, "", "-", "tool that carries the bead and its forces", form="tool")]
+      row("tool", kind_name, "", "-", "tool that carries the bead and its forces", form="tool"), &
+      row("from", kind_name, "", "-", "phase from which it acts; the first one by default", &
+          form="phase")]
   end function drawbead_keys
 
   function contact_keys() result(key)

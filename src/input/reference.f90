@@ -153,7 +153,7 @@ contains
     type(deck_t), intent(in) :: deck
     integer, intent(in) :: i
     type(token_t), intent(in) :: token
-    !> "set", "tool" or "material".
+    !> "set", "tool", "material" or "phase".
     character(len=*), intent(in) :: what
     type(known_t), intent(in) :: known
     type(error_list_t), intent(inout) :: errors
@@ -194,7 +194,7 @@ contains
   !> Return the names of all sets, tools or materials among the blocks up to `last`.
   pure function names_of(deck, what, last, known) result(name)
     type(deck_t), intent(in) :: deck
-    !> "set", "tool" or "material".
+    !> "set", "tool", "material" or "phase".
     character(len=*), intent(in) :: what
     integer, intent(in) :: last
     type(known_t), intent(in) :: known

@@ -174,7 +174,7 @@ contains
 
     type(digest_t) :: digest
 
-    call digest%add([bead%tool])
+    call digest%add([bead%tool, bead%from])
     call digest%add([bead%normal, bead%stiffness])
     call digest%add(reshape(bead%table, [size(bead%table)]))
     call digest%add(reshape(bead%line, [size(bead%line)]))

@@ -97,6 +97,7 @@ contains
     call new_drawbead(self, reshape(point, [2, size(point)/2]), table, spacing, thickness)
     self%name = spec%source%name
     self%tool = spec%tool
+    self%from = spec%from
     self%normal = spec%normal
   end subroutine build
 

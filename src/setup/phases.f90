@@ -59,7 +59,7 @@ contains
       model%phase(i)%unloaded = unloaded
       model%phase(i)%has_gravity = case%phase(i)%has_gravity
       call set_supports(model, unloaded, led, model%phase(i))
-      call set_drawbeads(model, unloaded, before%beads%active, model%phase(i))
+      call set_drawbeads(model, i, unloaded, before%beads%active, model%phase(i))
       call set_loads(case%phase(i), model, model%phase(i))
       before = model%phase(i)
     end do
@@ -273,10 +273,13 @@ contains
     if (.not. phase%floats) phase%prescribed = phase%held()
   end subroutine set_supports
 
-  !> Set which draw-beads act: those of an active tool, and those without a tool as long as the
-  !> sheet is not unloaded. They leave with their tool, those without one with all tools.
-  pure subroutine set_drawbeads(model, unloaded, before, phase)
+  !> Set which draw-beads act from their first phase on: those of an active tool, and those without
+  !> a tool as long as the sheet is not unloaded. They leave with their tool, those without one with
+  !> all tools.
+  pure subroutine set_drawbeads(model, number, unloaded, before, phase)
     type(model_t), intent(in) :: model
+    !> Of the phase.
+    integer, intent(in) :: number
     logical, intent(in) :: unloaded
     !> Beads that act in the phase before, `(n_bead)`.
     logical, intent(in) :: before(:)
@@ -293,6 +296,7 @@ contains
         phase%beads%leaves(b) = phase%withdrawn(tool)
       end associate
     end do
+    phase%beads%active = phase%beads%active .and. number >= model%drawbead%from
     phase%beads%leaves = phase%beads%leaves .and. before
     phase%beads%active = phase%beads%active .or. phase%beads%leaves
     phase%beads%new = phase%beads%active .and. .not. before

@@ -19,6 +19,8 @@ module dd3_model_terms_drawbead
     character(len=:), allocatable :: name
     !> Tool that carries it; 0 for none.
     integer :: tool = 0
+    !> Number of the phase from which it acts.
+    integer :: from = 1
     !> Force on the sheet along z, N/mm.
     real(wp) :: normal = 0.0_wp
     !> Slip path, mm, and limit of the restraining force there, N/mm, `(2, n)`: linear in between,
