@@ -27,6 +27,7 @@ FLANGE = 180.0  # width of the faces of die and holder around the opening
 ARCH = 40.0 / 600.0**2  # of the binder, z = ARCH x^2
 DEPTH, CROWN = 50.0, (6.0, 16.0)  # of the face below the binder at its rim, and its crown along x and y
 NOSE, SHOULDER = 8.0, 8.0  # radii of punch and die
+EDGE, ROUND = 14.0, 6.0  # distance of the flat part of the holder from the opening, and radius at which it ends there
 DRAFT = 20.0  # of the walls, degrees
 CREASE = 5.0  # radius of the feature lines on the punch
 # Feature lines along x: y, height of the ridge, angle of its sides at the line, degrees.
@@ -101,6 +102,15 @@ class Sector:
             side = (self.far - MARGIN) * self.outwards + q[..., None] * self.along
             x, y = np.moveaxis(side, -1, 0) * (1 - s) + self.place(q, start + 0 * q) * s
             return np.stack([x, y, face(x, y)], axis=-1)
+        return points
+
+    def holder(self):
+        """Return the map of the holder: s from 0 to 1 in the arc at the opening, to 2 on the binder."""
+        def points(q, s):
+            angle = math.radians(60) * np.clip(1 - s, 0, 1)
+            d = np.where(s < 1, EDGE - ROUND * np.sin(angle), EDGE + (s - 1) * (FLANGE - EDGE))
+            x, y = self.place(q, d)
+            return np.stack([x, y, binder(x, y) + ROUND * (1 - np.cos(angle))], axis=-1)
         return points
 
     def profile(self, start):
@@ -190,19 +200,28 @@ def grid_lines(with_face: bool):
     return lines_through(sorted(along_x)), lines_through(sorted(along_y))
 
 
-def tool(rows: np.ndarray, distance: float, with_face: bool) -> np.ndarray:
-    """Return a surface through rows of the section, with the face inside them or without."""
-    x, y = grid_lines(with_face)
+def sides(x: np.ndarray, y: np.ndarray):
+    """Return the sectors with their lines q."""
+    # q runs against x or y on two sides.
+    return zip(map(Sector, range(4)), (y, -x[::-1], -y[::-1], x))
+
+
+def tool(rows: np.ndarray, distance: float) -> np.ndarray:
+    """Return a surface through rows of the section, with the face inside them."""
+    x, y = grid_lines(with_face=True)
     start = -MARGIN * 0.6
-    nets = [patches(surface_over(face), x, y, distance)] if with_face else []
-    for turn in range(4):
-        sector = Sector(turn)
-        side = x if turn % 2 else y
-        side = -side[::-1] if turn in (1, 2) else side  # q runs against x or y there
-        if with_face:
-            nets.append(patches(sector.inner(start), side, np.linspace(0, 1, 3), distance))
-        nets.append(patches(sector.profile(start), side, rows, distance))
+    nets = [patches(surface_over(face), x, y, distance)]
+    for sector, side in sides(x, y):
+        nets += [patches(sector.inner(start), side, np.linspace(0, 1, 3), distance),
+                 patches(sector.profile(start), side, rows, distance)]
     return np.concatenate(nets)
+
+
+def blank_holder() -> np.ndarray:
+    """Return the surface of the blank-holder."""
+    rows = np.concatenate([np.linspace(0, 1, 4)[:-1], np.linspace(1, 2, 7)])
+    return np.concatenate([patches(sector.holder(), side, rows, 0.0)
+                           for sector, side in sides(*grid_lines(with_face=False))])
 
 
 def facing(net: np.ndarray, side: int) -> Surface:
@@ -217,9 +236,9 @@ def tools() -> dict[str, Surface]:
     """Return the tools by their names."""
     section = np.concatenate([np.linspace(0, 1, 2)[:-1], np.linspace(1, 2, 6)[:-1], np.linspace(2, 3, 3)[:-1],
                               np.linspace(3, 4, 6)[:-1], np.linspace(4, 5, 7)])
-    return {"punch": facing(tool(section[section <= 3], 0.0, with_face=True), -1),
-            "die": facing(tool(section, -THICKNESS - CLEARANCE, with_face=True), 1),
-            "holder": facing(tool(np.linspace(4.05, 5, 7), 0.0, with_face=False), -1)}
+    return {"punch": facing(tool(section[section <= 3], 0.0), -1),
+            "die": facing(tool(section, -THICKNESS - CLEARANCE), 1),
+            "holder": facing(blank_holder(), -1)}
 
 
 def main() -> None:
