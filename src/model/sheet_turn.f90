@@ -95,7 +95,7 @@ contains
     type(turn_field_t), intent(in) :: field(:)
     !> Whether an element is looked at, `(n_element)`.
     logical, intent(in) :: wanted(:)
-    !> Travel of the tools, mm.
+    !> Travel of the tools over the length of each element.
     real(wp), intent(in) :: ahead
     !> Angle by which the sheet can rotate meanwhile, rad: what of a tool has other normals counts
     !> later.
@@ -131,17 +131,17 @@ contains
   end subroutine turn_of_tools_ahead
 
   !> Raise the largest turn of an element to that of a tool within a distance.
-  pure subroutine raise_turn(largest, field, placement, x, distance, rotation)
+  pure subroutine raise_turn(largest, field, placement, x, relative_distance, rotation)
     real(wp), intent(inout) :: largest
     type(turn_field_t), intent(in) :: field
     type(placement_t), intent(in) :: placement
-    !> Corners of the face, mm, and the distance from it, mm.
-    real(wp), intent(in) :: x(3, n_corner), distance
+    !> Corners of the face, mm, and the distance from it over its longer edge.
+    real(wp), intent(in) :: x(3, n_corner), relative_distance
     !> Angle from the opposite of its normal within which those of the tool count, rad.
     real(wp), intent(in) :: rotation
 
     type(facing_t) :: facing
-    real(wp) :: corner(3, n_corner), centre(3), diagonal, length(2), frame(3, 3), reach
+    real(wp) :: corner(3, n_corner), centre(3), diagonal, length(2), frame(3, 3), distance, reach
     integer :: i, j
 
     do i = 1, n_corner
@@ -150,6 +150,7 @@ contains
     centre = 0.25_wp*sum(corner, dim=2)
     diagonal = max(norm2(corner(:, 3) - corner(:, 1)), norm2(corner(:, 4) - corner(:, 2)))
     call measure(corner, length, frame)
+    distance = relative_distance*maxval(length)
     ! Most elements have nothing near, and no more than a neighbour: one search from the centre.
     facing = facing_t(-face_normal(corner), cos(rotation))
     if (turn_over(field, centre, distance + 0.5_wp*diagonal, maxval(length), facing) <= largest) return

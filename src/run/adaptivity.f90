@@ -38,10 +38,10 @@ module dd3_run_adaptivity
   private
   public :: adaptivity_t, new_adaptivity
 
-  !> Travel of the tools within which a radius makes elements be divided, and that within which all
-  !> are divided then, over the mean length of the undivided elements; rotation of the sheet
-  !> meanwhile, over the angle.
-  real(wp), parameter :: near = 0.15_wp, ahead = 0.5_wp
+  !> Travel of the tools within which a radius makes an element be divided, and that within which all
+  !> are divided then, over the length of the element; rotation of the sheet meanwhile, over the
+  !> angle.
+  real(wp), parameter :: near = 0.3_wp, ahead = 1.0_wp
   real(wp), parameter :: near_rotation = 1.5_wp, rotation_ahead = 2.5_wp
   !> Turns over the angle of the input: that at which the mesh is changed, while all elements above
   !> the angle are divided then, as they come above it one after another when they are stretched
@@ -133,13 +133,13 @@ contains
     free = divisible(self, model, state)
     associate (angle => self%spec%angle)
       call turn_of_sheet(model, state%x, of_sheet)
-      call turn_of_tools_ahead(model, state, self%field, free, near*self%length, &
+      call turn_of_tools_ahead(model, state, self%field, free, near, &
           near_rotation*angle, of_tools)
       call find_compressed(model, state, compressed, yielding)
       too_long = edge_lengths(model, state%x) > longest*model%thickness
       if (.not. any(agreed_marks(marked .or. (free .and. (max(of_sheet, of_tools) > over*angle &
           .or. (too_long .and. yielding)))))) return
-      call turn_of_tools_ahead(model, state, self%field, free, ahead*self%length, &
+      call turn_of_tools_ahead(model, state, self%field, free, ahead, &
           rotation_ahead*angle, of_tools)
       marked = agreed_marks(marked .or. (free .and. (max(of_sheet, of_tools) > angle .or. &
           (too_long .and. compressed))))
