@@ -41,8 +41,8 @@ module dd3_run_adaptivity
   !> Travel of the tools within which a radius makes an element be divided, and that within which all
   !> are divided then, over the length of the element; rotation of the sheet meanwhile, over the
   !> angle.
-  real(wp), parameter :: near = 0.3_wp, ahead = 1.0_wp
-  real(wp), parameter :: near_rotation = 1.5_wp, rotation_ahead = 2.5_wp
+  real(wp), parameter :: near = 0.2_wp, ahead = 0.7_wp
+  real(wp), parameter :: near_rotation = 1.0_wp, rotation_ahead = 2.0_wp
   !> Turns over the angle of the input: that at which the mesh is changed, while all elements above
   !> the angle are divided then, as they come above it one after another when they are stretched
   !> and bent; that of the sheet at which an increment is made again.
