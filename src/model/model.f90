@@ -6,6 +6,7 @@ module dd3_model_model
   use dd3_material_material, only : material_t
   use dd3_model_contact_data, only : contact_data_t
   use dd3_model_internal_variables, only : variable_t
+  use dd3_model_mesh_change, only : mesh_change_t
   use dd3_model_mesh_data, only : node_set_t
   use dd3_model_phase, only : phase_t
   use dd3_model_terms_drawbead, only : drawbead_t
@@ -45,6 +46,8 @@ module dd3_model_model
     !> are allocated with the first refinement.
     real(wp) :: undivided_length = 0.0_wp
     integer, allocatable :: first_digest(:)
+    !> Refinements of the sheet since the start of the job; not allocated before the first.
+    type(mesh_change_t), allocatable :: change(:)
     !> What is written, and when.
     type(output_spec_t) :: output
   contains

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> history.csv: travel, displacements and forces of the tools, and the quantities of the node sets
-!> of *HISTORY. One row for the initial state and for every n-th accepted increment; the last state
+!> history.csv: travel, displacements and forces of the tools, the quantities of the node sets of
+!> *HISTORY, energies and the number of elements. One row for the initial state and for every n-th accepted increment; the last state
 !> of a phase and of the run always has a row. All ranks evaluate the rows, the first writes them.
 module dd3_output_history
   use dd3_base_kinds, only : pi, wp
@@ -128,6 +128,8 @@ contains
       end do
     end if
     call add_forming_heading(model, names, units)
+    names = names//",elements"
+    units = units//",-"
     text = "# units: "//units//newline//names//newline
   end function heading
 
@@ -200,6 +202,7 @@ contains
     end do
     if (allocated(model%history)) call add_set_values(table, model, state)
     call add_forming_values(table, model, state)
+    call table%add_integer(model%n_element)
   end subroutine fill_row
 
   !> Add the quantities of the node sets to a row.

@@ -28,6 +28,8 @@ module dd3_output_progress
     !> Path of the controlling tools since the job's start, mm.
     real(wp) :: travel = 0.0_wp
     integer :: increment = 0
+    !> Number of elements where it changes; 0 otherwise.
+    integer :: elements = 0
     !> Factor on the trial increment, and the limiter that set it.
     real(wp) :: r = 0.0_wp
     character(len=16) :: limiter = ""
@@ -179,6 +181,7 @@ contains
     line = trim(self%phase_name(view%phase))//" "//trim(adjustl(travel))//", inc "// &
         to_text(view%increment)//", r "//trim(adjustl(r))//" ("//trim(view%limiter)//"), "// &
         to_text(view%iterations)//" it"
+    if (view%elements > 0) line = line//", "//to_text(view%elements)//" elements"
     if (self%control_name(view%phase) /= "") line = line//", "//force_text(view%force)
     if (self%rate > 0.0_wp) then
       line = line//", "//duration_text((1.0_wp - view%progress)/self%rate)//" left"

@@ -11,6 +11,7 @@ module dd3_output_restart
   use dd3_base_text, only : join, newline
   use dd3_base_version, only : program_version
   use dd3_model_fingerprint, only : fingerprint_t, model_fingerprint
+  use dd3_model_mesh_change, only : packed_integers, packed_reals
   use dd3_model_model, only : model_t, node_set_t
   use dd3_model_part, only : part_t
   use dd3_model_state, only : state_t
@@ -240,6 +241,7 @@ contains
 
     number = [model%mesh_number, model%n_first_node]
     if (model%mesh_number > 0) call writer%integers("number", 2, number)
+    call visit_changes(model, writer)
     if (allocated(model%level)) then
       level = model%level
       call writer%integers("level", size(level), level)
@@ -248,6 +250,21 @@ contains
     bound = model%bound
     call writer%integers("bound", size(bound), bound)
   end subroutine visit_refinement
+
+  !> Write the list of the refinements.
+  subroutine visit_changes(model, writer)
+    type(model_t), intent(in) :: model
+    type(writer_t), intent(inout) :: writer
+
+    integer, allocatable :: number(:, :)
+    real(wp), allocatable :: value(:, :)
+
+    if (.not. allocated(model%change)) return
+    number = packed_integers(model%change)
+    value = packed_reals(model%change)
+    call writer%integers("change_number", size(number), number)
+    call writer%reals("change_value", size(value), value)
+  end subroutine visit_changes
 
   !> Write a text as character codes.
   subroutine visit_text(name, text, writer)

@@ -17,8 +17,9 @@ module dd3_output_restart_format
   character(len=*), parameter :: restart_name = "restart.h5"
   !> Mark of the file, and the version of its format. Version 1 holds the components of `state_t` by
   !> name; a change of their meaning makes a new version. `mesh/number`, `mesh/level` and
-  !> `mesh/bound` are there only where elements have been divided, `mesh/input_*` and `mesh/x_start`
-  !> (of a job that starts from another) only where they were divided in the run itself.
+  !> `mesh/bound` are there only where elements have been divided, `mesh/change_*`, `mesh/input_*`
+  !> and `mesh/x_start` (of a job that starts from another) only where they were divided in the run
+  !> itself.
   character(len=*), parameter :: mark = "dd3imp restart"
   integer, parameter :: format_version = 3
   !> Entries of `mesh/sizes`: numbers of nodes, of elements, of nodes and points of an element, of

@@ -17,7 +17,8 @@ module dd3_output_status
   character(len=*), parameter :: names = "increment,attempt,phase,travel,r,limiter,iterations,"// &
     "criterion,solver_iterations,gap,stick,slip,outcome,reason,seconds,limiter_element,"// &
     "limiter_point,limiter_node,limiter_tool,worst_node,worst_residual,worst_element,"// &
-    "worst_point,solver,r_force,force_node,force_tool,force_size,shortened,perturbed,eliminated"
+    "worst_point,solver,r_force,force_node,force_tool,force_size,shortened,perturbed,eliminated,"// &
+    "elements"
 
   !> Lower bound of values of r that stand for no limit.
   real(wp), parameter :: unlimited = 1.0e99_wp
@@ -40,7 +41,7 @@ module dd3_output_status
     integer :: solver_iterations = 0
     !> Number of candidates in each contact status.
     integer :: gap = 0, stick = 0, slip = 0
-    !> `accepted`, `retry` or `failed`.
+    !> `accepted`, `retry`, `refined` or `failed`.
     character(len=16) :: outcome = ""
     !> Reason of a failure or of a fallback of the linear solver.
     character(len=240) :: reason = ""
@@ -68,6 +69,8 @@ module dd3_output_status
     integer :: perturbed = 0
     !> Number of nonlinear eliminations.
     integer :: eliminated = 0
+    !> Number of elements.
+    integer :: elements = 0
   end type status_row_t
 
   !> Status table of a run.
@@ -139,6 +142,7 @@ contains
       call table%add_integer(row%shortened)
       call table%add_integer(row%perturbed)
       call table%add_integer(row%eliminated)
+      call table%add_integer(row%elements)
       call table%end_row(error)
     end associate
   end subroutine status_add

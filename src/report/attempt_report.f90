@@ -64,6 +64,7 @@ contains
       row%increment = committed%increment + 1
       row%attempt = attempt%number
       row%phase = phase%name
+      row%elements = model%n_element
       row%travel = committed%travel + attempt%limit%r*stepper%prediction%progress*phase%length
       row%r = attempt%limit%r
       row%limiter = attempt%limit%limiter

@@ -16,6 +16,7 @@ module dd3_run_model
   use dd3_input_case, only : case_t
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t
   use dd3_linalg_solver_registry, only : solver_names
+  use dd3_model_mesh_change, only : count_levels, mesh_change_t
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_output_progress, only : progress_t, progress_view_t
@@ -259,13 +260,34 @@ contains
       call take_up(model, run%stepper%system, run%committed, imbalance, error)
       if (allocated(error)) return
       run%trial = run%committed
-      call log%note("refined after increment "//to_text(run%committed%increment)// &
-          trim(merge(", before one that is made again", repeat(" ", 31), again))// &
-          ": "//to_text(before)//" to "//to_text(model%n_element)//" elements; forces out of "// &
-          "balance "//to_text(100.0_wp*imbalance, 2)//" % of the internal forces")
+      call add_change(model, run%committed, before, imbalance, again)
+      call log%say(model%change(size(model%change))%report(log%phase))
       if (model%part%divided) call log%note(model%part%report())
     end do
   end subroutine adapt
+
+  !> Add a refinement to the list of the model.
+  subroutine add_change(model, state, before, imbalance, repeats)
+    type(model_t), intent(inout) :: model
+    !> State on the refined sheet.
+    type(state_t), intent(in) :: state
+    !> Number of elements before.
+    integer, intent(in) :: before
+    !> Norm of the forces out of balance over that of the internal forces.
+    real(wp), intent(in) :: imbalance
+    !> Whether the next increment is made again.
+    logical, intent(in) :: repeats
+
+    type(mesh_change_t), allocatable :: change(:)
+
+    if (allocated(model%change)) then
+      change = model%change
+    else
+      allocate (change(0))
+    end if
+    model%change = [change, mesh_change_t(state%phase, state%increment, state%progress, &
+        state%travel, before, model%n_element, count_levels(model%level), imbalance, repeats)]
+  end subroutine add_change
 
   !> Log a change of the number of threads, and the first pivot that was perturbed.
   subroutine note_solution(run, model, log)
@@ -411,6 +433,7 @@ contains
       view%progress = state%progress
       view%travel = state%travel
       view%increment = state%increment
+      if (run%adaptivity%spec%levels > 0) view%elements = model%n_element
       view%r = attempt%limit%r
       view%limiter = trim(attempt%limit%limiter)
       view%iterations = size(attempt%course%norm)

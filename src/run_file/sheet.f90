@@ -1,16 +1,17 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Part of run.json: the sheet and its node sets.
+!> Part of run.json: the sheet, its node sets and its refinements.
 module dd3_run_file_sheet
   use dd3_base_json, only : json_t
   use dd3_base_kinds, only : wp
   use dd3_input_block, only : block_t
   use dd3_input_case, only : case_t
+  use dd3_model_mesh_change, only : mesh_change_t
   use dd3_model_model, only : model_t
   use dd3_run_file_input, only : add_location
   use dd3_settings_output, only : fields_at, fields_every, fields_increments, output_spec_t
   implicit none
   private
-  public :: add_sheet, add_sets
+  public :: add_refinements, add_sheet, add_sets
 
 contains
 
@@ -79,5 +80,41 @@ contains
     end if
     call json%end_array()
   end subroutine add_sets
+
+  !> Add the refinements since the start of the job.
+  subroutine add_refinements(json, model)
+    type(json_t), intent(inout) :: json
+    type(model_t), intent(in) :: model
+
+    integer :: i
+
+    call json%begin_array("refinements")
+    if (allocated(model%change)) then
+      do i = 1, size(model%change)
+        call add_refinement(json, model%change(i), model%phase(model%change(i)%phase)%name)
+      end do
+    end if
+    call json%end_array()
+  end subroutine add_refinements
+
+  !> Add a refinement.
+  subroutine add_refinement(json, change, phase)
+    type(json_t), intent(inout) :: json
+    type(mesh_change_t), intent(in) :: change
+    !> Name of its phase.
+    character(len=*), intent(in) :: phase
+
+    call json%begin_object("", flat=.true.)
+    call json%add("phase", phase)
+    call json%add("increment", change%increment)
+    call json%add("progress", change%progress)
+    call json%add("travel", change%travel)
+    call json%add("elements_before", change%before)
+    call json%add("elements", change%after)
+    call json%add("elements_of_level", change%of_level(:change%top_level()))
+    call json%add("imbalance", change%imbalance)
+    call json%add("repeated", change%repeats)
+    call json%end_object()
+  end subroutine add_refinement
 
 end module dd3_run_file_sheet

@@ -22,7 +22,7 @@ module dd3_run_file_writer
   use dd3_run_file_input, only : add_input, add_location
   use dd3_run_file_material, only : add_materials, add_points
   use dd3_run_file_phase, only : add_phases
-  use dd3_run_file_sheet, only : add_sets, add_sheet
+  use dd3_run_file_sheet, only : add_refinements, add_sets, add_sheet
   use dd3_run_file_tool, only : add_drawbeads, add_tools
   use dd3_settings_solver, only : solver_spec_t
   implicit none
@@ -205,6 +205,7 @@ contains
       call json%begin_array("phases", flat=.true.)
       call json%end_array()
     end if
+    call add_refinements(json, model)
     call add_counts(json, summary, size(case%point) > 0)
     call add_messages(json, "warnings", log, .true.)
     call add_messages(json, "notes", log, .false.)

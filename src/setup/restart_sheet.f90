@@ -8,6 +8,7 @@ module dd3_setup_restart_sheet
   use dd3_mesh_mesh, only : mesh_set_t
   use dd3_model_model, only : model_t
   use dd3_model_redistribution, only : divide_model
+  use dd3_output_restart_changes, only : read_changes
   use dd3_setup_model, only : rebuild_model
   use dd3_setup_sheet_file, only : read_restart_sheet
   use dd3_sheet_sheet, only : sheet_t
@@ -38,6 +39,7 @@ contains
     if (names == "") then
       call rebuild_model(model, case, sheet, errors)
       if (errors%count == 0) then
+        call read_changes(path, model%change, error)
         call divide_model(model)
         return
       end if

@@ -5,6 +5,7 @@
 
     refined.py --program build/release/dd3imp --work build/refined
 """
+import json
 import random
 import shutil
 import signal
@@ -61,6 +62,7 @@ class Runs:
             try:
                 self.runner.run(self.deck, output, self.found[increment])
                 compare(output, self.work / "whole")
+                check(reported(output) == reported(self.work / "whole"), "run.json has other refinements")
             except Failure as failure:
                 raise Failure(f"from increment {increment}: {failure}") from failure
 
@@ -82,6 +84,7 @@ class Runs:
         check(done == KILLS, f"only {done} of {KILLS} hit a run")
         runner.run(self.deck, output, restart_of(output), settings=settings)
         compare(output, self.work / "expected")
+        check(reported(output) == reported(self.work / "expected"), "run.json has other refinements")
 
     def refused(self):
         """Another model is named, and nothing is touched."""
@@ -111,6 +114,18 @@ def refinements(path):
     """Number of refinements that have made the mesh of a restart file."""
     with h5py.File(path, "r") as file:
         return int(file["mesh/number"][0]) if "mesh/number" in file else 0
+
+
+def reported(folder):
+    """Refinements that run.json reports: as many as have made the last mesh, up to its number of elements."""
+    changes = json.loads((folder / "run.json").read_text())["refinements"]
+    check(len(changes) == refinements(folder / "restart.h5"), f"run.json has {len(changes)} refinements")
+    elements = [int(row["elements"]) for row in table(folder / "history.csv")]
+    check(elements[-1] == changes[-1]["elements"] == sum(changes[-1]["elements_of_level"]), "other last elements")
+    check(elements == sorted(elements), "the number of elements decreases")
+    for one, other in zip(changes, changes[1:]):
+        check(one["elements"] == other["elements_before"], "a refinement is missing")
+    return changes
 
 
 def main():
