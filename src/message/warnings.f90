@@ -117,7 +117,8 @@ contains
           "passed between the nodes."), &
       row("W109", "tool between the nodes of the sheet", &
           "Contact holds at the nodes: a tool with a small radius enters the faces between them.", &
-          "Elements of the length that the message gives; `points` in `*CONTACT`."), &
+          "Elements of the length that the message gives, in a run with refinement by the "// &
+          "`adaptive` that it gives; `points` in `*CONTACT`."), &
       row("W110", "sheet beyond an open edge of a tool", &
           "The sheet has left the tool under pressure where its surface ends.", &
           "A surface that continues beyond this edge."), &
@@ -142,7 +143,18 @@ contains
       row("W116", "sheet that snaps in a release", &
           "Increments failed without viscous forces, which took more than 0.1 % of the elastic "// &
           "energy released: the sheet jumped from one equilibrium to another.", &
-          "Compare with tools withdrawn in another order by `move`; a smaller `trial`.")]
+          "Compare with tools withdrawn in another order by `move`; a smaller `trial`."), &
+      row("W117", "elements divided too late", &
+          "An increment was made again on finer meshes as often as allowed and still bends the "// &
+          "sheet by more than `adaptive_angle` over elements that could be divided. It is "// &
+          "accepted, and they are divided before the next one: what they were too long for stays "// &
+          "in their stresses.", "Smaller increments (`trial`, `rotation` in `*LIMITS`), or "// &
+          "shorter elements at the start."), &
+      row("W118", "elements that are not divided further", &
+          "The sheet is bent by more than `adaptive_angle` over elements of the highest level, "// &
+          "or of the least length, at the end of the phase. Where a tool enters the sheet "// &
+          "between its nodes, W109 tells it instead.", &
+          "The `adaptive` or `adaptive_size` that the message gives.")]
   end function run_warnings
 
   !> Return the notes.

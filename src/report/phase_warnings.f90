@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Notes and warnings at the start and at the end of a phase: nodes that stay held, a pressed tool
 !> without contact, an unsupported sheet, yielding during a release, gaps of the contact layers, and
-!> those on chosen supports and on tools.
+!> those on chosen supports, on tools and on the refinement.
 module dd3_report_phase_warnings
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : sum_over_ranks
@@ -23,8 +23,10 @@ module dd3_report_phase_warnings
   use dd3_model_tolerances, only : tangential
   use dd3_process_phase_end, only : phase_is_over, until_met, until_tolerance, until_value
   use dd3_process_phase_start, only : gap_of_tool
+  use dd3_report_refinement_warnings, only : add_refinement_warnings
   use dd3_report_tool_warnings, only : add_tool_warnings
   use dd3_report_unload_report, only : add_reactions, imbalance_warning, unload_note
+  use dd3_settings_adaptive, only : adaptive_spec_t
   use dd3_settings_until, only : until_force
   use dd3_tools_closest, only : hint_t, hit_t
   use dd3_tools_tool, only : find_on_tool
@@ -66,11 +68,12 @@ contains
   end subroutine start_notes
 
   !> Return the notes and warnings on the running phase at its end, or where the run stops in it.
-  subroutine end_notes(model, state, ended, notes)
+  subroutine end_notes(model, state, ended, adaptive, notes)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     !> Whether the phase has reached its end.
     logical, intent(in) :: ended
+    type(adaptive_spec_t), intent(in) :: adaptive
     type(message_list_t), intent(out) :: notes
 
     if (ended) then
@@ -83,7 +86,8 @@ contains
           call notes%add_new("W115", energy_warning(state, elastic_energy(model, state), &
           energy_error(model, state)))
     end if
-    call add_tool_warnings(model, state, ended, notes)
+    call add_tool_warnings(model, state, ended, adaptive, notes)
+    call add_refinement_warnings(model, state, adaptive, notes)
   end subroutine end_notes
 
   !> Return a warning if a phase with an early end went on to its end, or beyond the value that

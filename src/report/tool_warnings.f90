@@ -12,11 +12,13 @@ module dd3_report_tool_warnings
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_process_open_edges, only : edge_name
+  use dd3_report_suitable_levels, only : halvings, levels_advice
   use dd3_report_tool_crossing, only : crossing_t, find_crossing
+  use dd3_settings_adaptive, only : adaptive_spec_t
   use dd3_tools_closest, only : hit_t
   implicit none
   private
-  public :: add_tool_warnings
+  public :: add_tool_warnings, depth_warning
 
   !> Depth between the nodes that is reported, relative to the thickness, and relative to the edges
   !> of the face: the sagitta l/(8R) of a chord l on a radius R is pi/64 with four elements to the
@@ -27,12 +29,13 @@ module dd3_report_tool_warnings
 contains
 
   !> Add the warnings.
-  subroutine add_tool_warnings(model, state, ended, warnings)
+  subroutine add_tool_warnings(model, state, ended, adaptive, warnings)
     type(model_t), intent(in) :: model
     !> Last state of the phase.
     type(state_t), intent(in) :: state
     !> Whether the phase has reached its end. Before that, a tool may yet come to the sheet.
     logical, intent(in) :: ended
+    type(adaptive_spec_t), intent(in) :: adaptive
     type(message_list_t), intent(inout) :: warnings
 
     integer :: a, b
@@ -42,7 +45,7 @@ contains
         if (.not. active(a)) cycle
         if (ended .and. .not. phase%withdrawn(a)) &
             call add("W108", contact_warning(model, state, a))
-        if (.not. phase%withdrawn(a)) call add("W109", depth_warning(model, state, a))
+        if (.not. phase%withdrawn(a)) call add("W109", depth_warning(model, state, a, adaptive))
         call add("W110", edge_warning(model, state, a))
         do b = a + 1, model%n_tool
           if (.not. active(b)) cycle
@@ -99,13 +102,15 @@ contains
   end function contact_warning
 
   !> Return a warning if a tool has entered the faces of the sheet notably between their nodes.
-  function depth_warning(model, state, tool) result(text)
+  function depth_warning(model, state, tool, adaptive) result(text)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     integer, intent(in) :: tool
+    type(adaptive_spec_t), intent(in) :: adaptive
     character(len=:), allocatable :: text
 
-    real(wp) :: edge(3, 4), length
+    real(wp) :: edge(3, 4), length, expected
+    integer :: level
 
     text = ""
     if (state%observed%deepest_face(tool) == 0) return
@@ -120,34 +125,36 @@ contains
           to_text(state%observed%largest_depth(tool), 3)//" mm ("//to_text(depth, 2)// &
           " thicknesses), at the face of element "// &
           to_text(model%face%element(state%observed%deepest_face(tool)))//" with edges up to "// &
-          to_text(length, 3)//" mm long: the mesh is too coarse for the tool; expected "// &
-          suitable_mesh(state%observed%deepest_radius(tool), &
-          length**2/(8.0_wp*state%observed%largest_depth(tool)), &
-          model%thickness)
+          to_text(length, 3)//" mm long: the mesh is too coarse for the tool; expected "
     end associate
+    associate (radius => state%observed%deepest_radius(tool))
+      if (radius >= huge(1.0_wp)) then
+        text = text//"a line of nodes along the edge of the tool, or a radius there"
+        return
+      end if
+      expected = suitable_length(min(radius, &
+          length**2/(8.0_wp*state%observed%largest_depth(tool))), model%thickness)
+      text = text//"elements at most "//to_text(expected, 3)//" mm long on its radius of "// &
+          to_text(radius, 3)//" mm"
+    end associate
+    if (adaptive%levels == 0) return
+    level = halvings(length, expected)
+    if (allocated(model%level)) &
+        level = level + model%level(model%face%element(state%observed%deepest_face(tool)))
+    text = text//": "//levels_advice(adaptive, level, length/2.0_wp**halvings(length, expected))
   end function depth_warning
 
-  !> Return the mesh with which a radius of a tool gives no warning: the depth l**2/(8R) of elements
-  !> of length l is slight, or notable neither for the thickness nor for the length. Where the tool
-  !> is curved in two directions, or along the diagonal of a face, the depth is that of a smaller
-  !> radius.
-  function suitable_mesh(radius, radius_of_depth, thickness) result(text)
-    !> Radius of curvature, mm; huge for an edge without radius. Radius of a cylinder that enters
-    !> the elements as deep, mm.
-    real(wp), intent(in) :: radius, radius_of_depth
-    real(wp), intent(in) :: thickness
-    character(len=:), allocatable :: text
+  !> Return the length of elements with which a radius of a tool gives no warning, mm: the depth
+  !> l**2/(8R) of elements of length l is slight, or notable neither for the thickness nor for the
+  !> length. Where the tool is curved in two directions, or along the diagonal of a face, the radius
+  !> is that of a cylinder that enters the elements as deep.
+  pure real(wp) function suitable_length(radius, thickness) result(length)
+    !> mm.
+    real(wp), intent(in) :: radius, thickness
 
-    real(wp) :: length, smaller
-
-    text = "a line of nodes along the edge of the tool, or a radius there"
-    if (radius >= huge(1.0_wp)) return
-    smaller = min(radius, radius_of_depth)
-    length = max(sqrt(8.0_wp*smaller*slight_depth*thickness), &
-        min(sqrt(8.0_wp*smaller*notable_depth*thickness), 8.0_wp*smaller*notable_slope))
-    text = "elements at most "//to_text(length, 3)//" mm long on its radius of "// &
-        to_text(radius, 3)//" mm"
-  end function suitable_mesh
+    length = max(sqrt(8.0_wp*radius*slight_depth*thickness), &
+        min(sqrt(8.0_wp*radius*notable_depth*thickness), 8.0_wp*radius*notable_slope))
+  end function suitable_length
 
   !> Return a warning if the sheet has left a tool under pressure where its surface ends.
   function edge_warning(model, state, tool) result(text)

@@ -36,7 +36,7 @@ module dd3_run_adaptivity
   use dd3_tools_turn_field, only : new_turn_field, turn_field_t
   implicit none
   private
-  public :: adaptivity_t, new_adaptivity
+  public :: adaptivity_t, most_returns, new_adaptivity
 
   !> Travel of the tools within which a radius makes an element be divided, and that within which all
   !> are divided then, over the length of the element; rotation of the sheet meanwhile, over the
@@ -67,6 +67,10 @@ module dd3_run_adaptivity
     logical, allocatable :: waiting(:)
     !> Increments made again since the last one that was accepted.
     integer :: returns = 0
+    !> Elements that the last increment bends by more than the angle though it was accepted, as it
+    !> had been made again often enough, and the largest angle, rad.
+    integer :: n_late = 0
+    real(wp) :: late_turn = 0.0_wp
   contains
     procedure :: judge
     procedure :: find_marks
@@ -147,7 +151,7 @@ contains
   end subroutine find_marks
 
   !> Judge a converged increment: too late if the sheet turns by far more than the angle over an
-  !> element that may be divided.
+  !> element that may be divided. It is not after `most_returns` repetitions.
   subroutine judge(self, model, trial, too_late)
     class(adaptivity_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -158,13 +162,18 @@ contains
     real(wp) :: turn(model%n_element)
 
     too_late = .false.
-    if (.not. may_refine(self, model, trial) .or. self%returns == most_returns) then
+    self%n_late = 0
+    if (.not. may_refine(self, model, trial)) then
       self%returns = 0
       return
     end if
     call turn_of_sheet(model, trial%x, turn)
     marked = agreed_marks(turn > too_far*self%spec%angle .and. divisible(self, model, trial))
-    too_late = any(marked)
+    too_late = any(marked) .and. self%returns < most_returns
+    if (any(marked) .and. .not. too_late) then
+      self%n_late = count(marked)
+      self%late_turn = maxval(turn, marked)
+    end if
     if (too_late) then
       self%waiting = marked
       self%returns = self%returns + 1

@@ -32,8 +32,9 @@ module dd3_run_model
   use dd3_process_step_control, only : cut_back, makes_progress, return_to_until, stepper_t
   use dd3_report_tool_depth, only : observe_tools
   use dd3_report_attempt_report, only : failure_message, status_row
+  use dd3_report_refinement_warnings, only : late_warning
   use dd3_report_phase_warnings, only : end_notes, start_notes
-  use dd3_run_adaptivity, only : adaptivity_t, new_adaptivity
+  use dd3_run_adaptivity, only : adaptivity_t, most_returns, new_adaptivity
   use dd3_run_thread_choice, only : new_thread_choice, thread_choice_t
   use dd3_settings_solver, only : solver_spec_t
   use dd3_system_system, only : new_system
@@ -219,7 +220,7 @@ contains
         exit
       end do
       ended = .not. allocated(error)
-      call end_notes(model, committed, ended, notes)
+      call end_notes(model, committed, ended, case%adaptive, notes)
       call tell_all(log, notes)
       if (ended) call run%records%write_phase_end(model, committed, error)
     end associate
@@ -289,7 +290,8 @@ contains
         state%travel, before, model%n_element, count_levels(model%level), imbalance, repeats)]
   end subroutine add_change
 
-  !> Log a change of the number of threads, and the first pivot that was perturbed.
+  !> Log a change of the number of threads, elements that are divided too late, and the first pivot
+  !> that was perturbed.
   subroutine note_solution(run, model, log)
     type(run_t), intent(inout) :: run
     type(model_t), intent(in) :: model
@@ -297,6 +299,8 @@ contains
 
     if (run%threads%news /= "") call log%note(trim(run%threads%news))
     run%threads%news = ""
+    call log%report("W117", late_warning(run%adaptivity%n_late, run%adaptivity%late_turn, &
+        most_returns))
     associate (perturbed => run%stepper%attempt%solver%perturbed)
       if (run%told_perturbed .or. perturbed%blocks == 0) return
       run%told_perturbed = .true.
