@@ -26,8 +26,10 @@ module dd3_app_job
   use dd3_output_fields, only : field_record_t
   use dd3_output_restart_read, only : read_restart
   use dd3_output_run_summary, only : run_summary_t
+  use dd3_report_expected_time, only : time_report
   use dd3_report_settings_report, only : contact_report, drawbead_report, limits_report
   use dd3_report_job_size, only : find_job_size, job_size_t, memory_warning, size_report
+  use dd3_run_expected_mesh, only : expected_mesh_t, new_expected_mesh
   use dd3_run_model, only : run_start_t, solver_options
   use dd3_run_file_writer, only : run_file_t
   use dd3_setup_axes, only : normal_report
@@ -165,6 +167,7 @@ contains
     type(run_start_t), intent(in) :: start
 
     type(job_size_t) :: job
+    type(expected_mesh_t) :: mesh
     class(linear_solver_t), allocatable :: solver
     type(error_t), allocatable :: ignored
     type(message_list_t) :: messages, warnings
@@ -172,6 +175,12 @@ contains
     integer :: i
 
     settings = contact_report(model)
+    if (size(case%point) == 0) then
+      if (this_rank() == 0) &
+          call find_job_size(job, model, start%state, solver_options(start), solver, ignored)
+      if (allocated(solver)) call solver%release()
+      call new_expected_mesh(mesh, case, model, start%state)
+    end if
     if (this_rank() > 0) return
     write (output_unit, '(a)', advance="no") echo_case(case)//default_report(case, model)// &
         normal_report(case, model)// &
@@ -179,9 +188,8 @@ contains
     if (allocated(start%sheet_report)) &
         write (output_unit, '(a)', advance="no") start%sheet_report
     if (size(case%point) == 0) then
-      call find_job_size(job, model, start%state, solver_options(start), solver, ignored)
-      if (allocated(solver)) call solver%release()
-      write (output_unit, '(a)', advance="no") size_report(job)
+      write (output_unit, '(a)', advance="no") size_report(job)//mesh%report()// &
+          time_report(model, start%state, mesh%mean_number())
       call messages%add_new("W014", memory_warning(job))
     end if
     call unit_warnings(case, model, warnings)

@@ -22,7 +22,7 @@ module dd3_tools_turn_field
   use dd3_tools_vector_tree, only : facing_t, largest_within, new_vector_tree, vector_tree_t
   implicit none
   private
-  public :: turn_field_t, new_turn_field, largest_turn, turn_over
+  public :: turn_field_t, new_turn_field, turn_over
 
   !> Squares of |n_1 - n_2| of normals at an angle of 120 degrees, and of 90 degrees, the largest
   !> angle of a pair that is farther apart than the length.
@@ -203,23 +203,12 @@ contains
     end do
   end subroutine find_near
 
-  !> Return the largest turn over a length of the field at the points of the surface within a
-  !> distance, rad, at most `resolution` too small; 0 if there is none.
-  pure real(wp) function largest_turn(self, x, reach, level)
-    type(turn_field_t), intent(in) :: self
-    !> Place in the frame of the tool, and the distance from it, mm.
-    real(wp), intent(in) :: x(3), reach
-    !> Number of the length.
-    integer, intent(in) :: level
-
-    largest_turn = largest_within(self%level(level), x, reach, resolution)
-  end function largest_turn
-
-  !> Return the largest turn over any length: linear between those of the field, as on an arc and
-  !> at a kink, and the one over the shortest or the longest length beyond them, rad.
+  !> Return the largest turn over a length at the points of the surface within a distance, rad, at
+  !> most `resolution` too small; 0 if there is none. It is linear between the lengths of the field,
+  !> as on an arc and at a kink, and beyond them that over the shortest or the longest one.
   pure real(wp) function turn_over(self, x, reach, length, facing, frame) result(turn)
     type(turn_field_t), intent(in) :: self
-    !> As for `largest_turn`.
+    !> Place in the frame of the tool, and the distance from it, mm.
     real(wp), intent(in) :: x(3), reach
     !> mm.
     real(wp), intent(in) :: length
