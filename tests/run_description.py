@@ -46,7 +46,25 @@ def check_description(folder, code):
         raise Problem(f"{place}: exit code {code} and {len(found['errors'])} errors")
     if found["phases"]:
         check_counts(found, folder)
+        check_refinements(found, folder)
     return found
+
+
+def check_refinements(found, folder):
+    """Check that the refinements follow one another, and that the last one gives the last number of elements."""
+    changes, place = found["refinements"], folder / "run.json"
+    for number, change in enumerate(changes):
+        if sum(change["elements_of_level"]) != change["elements"] or change["elements"] <= change["elements_before"]:
+            raise Problem(f"{place}: refinement {number + 1} has the numbers of elements {change}")
+        if number and change["elements_before"] != changes[number - 1]["elements"]:
+            raise Problem(f"{place}: refinement {number + 1} does not follow the one before")
+    rows = [row for row in read_table(folder / "status.csv") if is_whole(row)] \
+        if (folder / "status.csv").exists() else []
+    if not rows or found["outcome"]["exit_code"] != 0:
+        return
+    expected = changes[-1]["elements"] if changes else found["sheet"]["elements"]
+    if int(rows[-1]["elements"]) != expected:
+        raise Problem(f"{place}: {expected} elements at the end, {rows[-1]['elements']} in status.csv")
 
 
 def check_counts(found, folder):

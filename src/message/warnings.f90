@@ -151,8 +151,8 @@ contains
           "in their stresses.", "Smaller increments (`trial`, `rotation` in `*LIMITS`), or "// &
           "shorter elements at the start."), &
       row("W118", "elements that are not divided further", &
-          "The sheet is bent by more than `adaptive_angle` over elements of the highest level, "// &
-          "or of the least length, at the end of the phase. Where a tool enters the sheet "// &
+          "The sheet is bent by more than 1.5 times `adaptive_angle` over elements of the "// &
+          "highest level, or of the least length, at the end of the phase. Where a tool enters the sheet "// &
           "between its nodes, W109 tells it instead.", &
           "The `adaptive` or `adaptive_size` that the message gives.")]
   end function run_warnings

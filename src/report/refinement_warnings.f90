@@ -21,6 +21,9 @@ module dd3_report_refinement_warnings
   private
   public :: add_refinement_warnings, late_warning
 
+  !> Angle that is told, over that of the input: with its default 22.5 degrees, four elements to the
+  !> quarter circle, from where the depth of a tool is told too.
+  real(wp), parameter :: notable = 1.5_wp
   !> Difference of lengths that is round-off, relative.
   real(wp), parameter :: round_off = 1.0e-6_wp
 
@@ -45,7 +48,7 @@ contains
       if (allocated(model%level)) level = model%level
       length = edge_lengths(model, state%x)
       call turn_of_sheet(model, state%x, turn)
-      over = turn > angle .and. (level >= adaptive%levels .or. &
+      over = turn > notable*angle .and. (level >= adaptive%levels .or. &
           0.5_wp*length < (1.0_wp - round_off)*adaptive%size)
       if (.not. any(over)) return
       tool = tools_of_elements(model, state, over)
@@ -57,7 +60,7 @@ contains
         call warnings%add_new("W118", "in phase '"//phase%name//"' the sheet is bent by up to "// &
             degrees(maxval(turn, over .and. tool == t))//" over an element "// &
             place_of(model, state, t, maxloc(turn, 1, over .and. tool == t))//", more than "// &
-            "adaptive_angle = "//to_text(adaptive%angle, 3)//" at "// &
+            to_text(notable, 2)//" times adaptive_angle = "//to_text(adaptive%angle, 3)//" at "// &
             to_text(count(over .and. tool == t))//" elements that are not divided further; "// &
             "expected "//levels_advice(adaptive, maxval(level + halvings(turn, angle), &
             over .and. tool == t), minval(length/2.0_wp**halvings(turn, angle), &

@@ -36,7 +36,7 @@ module dd3_run_adaptivity
   use dd3_tools_turn_field, only : new_turn_field, turn_field_t
   implicit none
   private
-  public :: adaptivity_t, most_returns, new_adaptivity
+  public :: adaptivity_t, ahead, most_returns, new_adaptivity
 
   !> Travel of the tools within which a radius makes an element be divided, and that within which all
   !> are divided then, over the length of the element; rotation of the sheet meanwhile, over the

@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Results whose mesh changes: each step with its own mesh, for VTK and for dd3; bound nodes leave no gap."""
 
+import json
+
+import matplotlib.colors
+import matplotlib.image
 import numpy as np
 import pytest
 import vtk
@@ -14,6 +18,7 @@ from dd3.fields import Fields
 from dd3.forming_limit import strains_of
 from dd3.mesh import read_run
 from dd3.outline import rim_on
+from dd3.plot import levels
 from dd3.section import Section
 from dd3.sheet import Sheet, length, plane
 from dd3.springback import Springback, best_fit, twist
@@ -185,3 +190,20 @@ def test_commands(run, tmp_path):
     call("export", run, "last.k", "--shells")
     lines = (tmp_path / "last.k").read_text().split("*CONSTRAINED_ADAPTIVITY\n")[1].splitlines()
     assert len(lines) == 5  # and the end
+
+
+def test_picture_of_levels(run, tmp_path):
+    """Check that the elements have the colour of their level, and the names in the legend."""
+    (run / "run.json").write_text(json.dumps({"format": "dd3imp run", "format_version": 2, "tools": [],
+                                              "drawbeads": [], "phases": [], "outcome": {"state": "reached"}}))
+    picture = tmp_path / "levels.png"
+    call("plot", "sheet", run, "--field", "level", "--view", "top", "--size", 400, 400, "--output", picture)
+    colours = matplotlib.image.imread(picture)[..., :3][:300]
+    for level in range(3):
+        wanted = np.array(matplotlib.colors.to_rgb(levels.COLOURS[level]))
+        hue = colours / np.maximum(colours.max(axis=-1, keepdims=True), 1e-6)  # whatever the light
+        near = np.abs(hue - wanted / wanted.max()).max(axis=-1) < 0.03
+        assert near.sum() > 300, level
+    assert levels.names_of([LEVELS[2]]) == [f"level {i}: {(LEVELS[2] == i).sum()} elements" for i in range(3)]
+    assert levels.names_of([LEVELS[0], LEVELS[1]]) == ["level 0", "level 1"]
+    assert levels.limits_of(2) == [-0.5, 2.5] and len(levels.colours_of(4)) == 5

@@ -5,7 +5,9 @@ import csv
 import json
 import math
 import re
+from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 from helpers import call, write_run
@@ -241,6 +243,22 @@ def test_report(run, tmp_path):
     assert "a run of material points, without a sheet; see dd3 plot point" in call("report", tmp_path / "points.out",
                                                                                     expect=2)
     assert not (tmp_path / "other").exists()
+
+
+def test_refinements(run, tmp_path):
+    """Check the table of refinements and the picture of the levels, which are there where elements were divided."""
+    assert "Refinement" not in rows_of(Path(call("report", run, "--output", tmp_path / "report").strip()))
+    with h5py.File(run / "fields.vtkhdf", "r+") as file:
+        count = len(file["VTKHDF/Types"])
+        file["VTKHDF/CellData/level"] = np.concatenate([np.zeros(count, int), np.arange(count) % 3])
+        file["VTKHDF/Steps/CellDataOffsets/level"] = [0, count]
+    job = json.loads((run / "run.json").read_text())
+    job["refinements"] = [{"phase": "draw", "increment": 0, "progress": 0.25, "travel": 0.5, "elements_before": 40,
+                           "elements": 80, "elements_of_level": [27, 27, 26], "imbalance": 0.084, "repeated": True}]
+    (run / "run.json").write_text(json.dumps(job))
+    page = Path(call("report", run, "--output", tmp_path / "report").strip())
+    assert rows_of(page)["Refinement"]["draw"] == "0 0.5 40 80 27 + 27 + 26 8.4 yes"
+    assert (tmp_path / "report" / "levels.png").read_bytes()[:4] == b"\x89PNG"
 
 
 def test_numbers_of_the_report(run, tmp_path):

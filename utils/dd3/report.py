@@ -6,10 +6,11 @@
 
 The page has the thinning, the deformed sheet between its tools, the forming limit diagram, thickness along sections,
 the outline before and after, the springback of a sheet that was released (its distance from the drawn shape, sections,
-angles, twist), for each phase the tools' motions and forces, what limited its increments and what warned, the
-statistics of the run, and the set-up. --mirror completes a model at its planes of symmetry; forces are multiplied
-accordingly. Forming limit curve and thinning limit are those of `dd3 fld`; without a curve for the material there is no
-verdict. The strains are those at the middle of the sheet.
+angles, twist), the refinements and the final mesh where elements were divided in the run, for each phase the tools'
+motions and forces, what limited its increments and what warned, the statistics of the run, and the set-up. --mirror
+completes a model at its planes of symmetry; forces are multiplied accordingly. Forming limit curve and thinning limit
+are those of `dd3 fld`; without a curve for the material there is no verdict. The strains are those at the middle of the
+sheet.
 """
 
 import argparse
@@ -404,6 +405,24 @@ def add_pictures(report: Report) -> None:
         report.add(title, report.image(name, alt))
 
 
+def add_refinements(report: Report) -> None:
+    """Add the refinements of the mesh, where there are any, and the levels of the elements at the end."""
+    changes = report.job.get("refinements")
+    if not changes:
+        return
+    options = report.sheet_options("levels", "--field", "level", "--hide", "all")
+    pictures.make_picture(pictures.Run(report.folder, report.job), options)
+    heading = ("phase", "after increment", "travel, mm", "elements before", "after", "of levels 0, 1, ...",
+               "forces out of balance, %", "next increment made again")
+    rows = [(change["phase"], change["increment"], f"{change['travel']:.4g}", change["elements_before"],
+             change["elements"], " + ".join(map(str, change["elements_of_level"])), f"{100 * change['imbalance']:.2g}",
+             "yes" if change["repeated"] else "no") for change in changes]
+    content = "".join("<tr>" + "".join(f"<td>{html.escape(str(cell))}</td>" for cell in row) + "</tr>\n"
+                      for row in rows)
+    report.add("Refinement", report.image("levels", "levels of the elements at the end")
+               + "<table><tr>" + "".join(f"<th>{name}</th>" for name in heading) + f"</tr>\n{content}</table>")
+
+
 def add_warnings(report: Report) -> None:
     """Add the warnings of the run."""
     found = [f"{warning['at']['file']}:{warning['at']['line']}: {warning['text']}" if warning["at"] else warning["text"]
@@ -425,8 +444,8 @@ def page(report: Report) -> str:
 """
 
 
-STEPS = (add_pictures, add_limit_diagram, add_sections, add_outline, add_springback, add_phases, add_beads,
-         add_warnings, add_statistics, add_setup)
+STEPS = (add_pictures, add_limit_diagram, add_sections, add_outline, add_springback, add_refinements, add_phases,
+         add_beads, add_warnings, add_statistics, add_setup)
 
 
 def write(options: argparse.Namespace) -> Report:

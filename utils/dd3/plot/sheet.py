@@ -3,6 +3,7 @@
 
     dd3 plot sheet bending.out
     dd3 plot sheet bending.out --at 10 --at 40 --field stress:11 --view front --mirror x
+    dd3 plot sheet cup.out --field level --hide all             # elements by how often they have been divided
     dd3 plot sheet bending.dat --program build/release/dd3imp   # before a run
 
 The sheet and the tools' displacements are read from fields.vtkhdf, their surfaces from the .bez files that
@@ -29,6 +30,7 @@ from dd3.bound import closed_skin
 from dd3.command import new_parser
 from dd3.errors import Problem
 from dd3.fields import AT, Fields, text_of
+from dd3.plot import levels
 from dd3.plot.beads import draw_beads
 from dd3.programs import command, find_program, launch, setting
 from dd3.progress import each
@@ -246,7 +248,8 @@ def command_line() -> argparse.ArgumentParser:
     parser.add_argument("--set", action="append", type=setting, default=[], metavar="NAME=VALUE",
                         help="parameter of an input file")
     parser.add_argument("--at", action="append", metavar="PLACE", help=AT + "; may be repeated")
-    parser.add_argument("--field", help="field, or field:component, such as stress:11 or displacement:z "
+    parser.add_argument("--field", help="field, or field:component, such as stress:11 or displacement:z; level: how "
+                        "often the elements have been divided "
                         "(equivalent_plastic_strain; of an input file thickness)")
     parser.add_argument("--cells", action="store_true", help="values at the elements instead of the nodes")
     parser.add_argument("--limits", type=float, nargs=2, metavar=("LOW", "HIGH"), help="range of the colours")
@@ -273,6 +276,7 @@ def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
     parser = command_line()
     options = parser.parse_args(words)
     options.mirror = sorted(set("".join(options.mirror)))
+    options.cells = options.cells or options.field == levels.LEVEL
     if options.view not in VIEWS and not direction(options.view):
         parser.error("--view takes one of " + ", ".join(VIEWS) + ' or a direction "x y z"')
     if options.limits and not options.limits[0] < options.limits[1]:
@@ -332,6 +336,8 @@ def opened(options: argparse.Namespace) -> Iterator[Run]:
 
 def limits_of(run: Run, steps: Sequence[int], options: argparse.Namespace) -> Sequence[float]:
     """Return the range of the colours: that of --limits, or of all values drawn."""
+    if options.field == levels.LEVEL:
+        return levels.limits_of(int(max(run.mesh(step, options.field, True)[0]["shown"].max() for step in steps)))
     if options.limits:
         return list(options.limits)
     ranges = [run.mesh(step, options.field, options.cells)[0]["shown"] for step in steps]
@@ -359,11 +365,15 @@ def make_picture(run: Run, options: argparse.Namespace) -> None:
     tools = find_tools(run, options)
     steps = [run.step_at(place) for place in options.at] if options.at else [run.last]
     limits, box = limits_of(run, steps, options), box_of(run, steps, options, tools)
+    names = []
+    if options.field == levels.LEVEL:
+        names = levels.names_of([run.mesh(step, options.field, True)[0]["shown"] for step in steps])
+        options.colours = levels.colours_of(len(names) - 1)
     plotter = new_plotter(options, len(steps))
     for row, step in enumerate(each(steps, "pictures")):
         plotter.subplot(row, 0)
         draw(plotter, run, step, options, tools, limits, box)
-    finish(plotter, run.mesh(steps[0], options.field, options.cells)[1], options, limits)
+    finish(plotter, run.mesh(steps[0], options.field, options.cells)[1], options, limits, names)
 
 
 def make_map(mesh: pv.UnstructuredGrid, label: str, options: argparse.Namespace) -> None:
@@ -377,10 +387,14 @@ def make_map(mesh: pv.UnstructuredGrid, label: str, options: argparse.Namespace)
     finish(plotter, label, options, limits)
 
 
-def finish(plotter: Any, label: str, options: argparse.Namespace, limits: Sequence[float]) -> None:
-    """Draw the colour bar below the pictures and write them."""
+def finish(plotter: Any, label: str, options: argparse.Namespace, limits: Sequence[float],
+           names: Sequence[str] = ()) -> None:
+    """Draw the colour bar below the pictures, of levels the legend with their names, and write them."""
     plotter.subplot(plotter.shape[0] - 1, 0)
-    draw_bar(plotter, label, options, limits)
+    if names:
+        levels.draw_legend(plotter, names)
+    else:
+        draw_bar(plotter, label, options, limits)
     try:
         plotter.screenshot(options.output)
     except (OSError, ValueError) as error:
