@@ -147,13 +147,13 @@ contains
       row("W117", "elements divided too late", &
           "An increment was made again on finer meshes as often as allowed and still bends the "// &
           "sheet by more than `adaptive_angle` over elements that could be divided. It is "// &
-          "accepted, and they are divided before the next one: what they were too long for stays "// &
-          "in their stresses.", "Smaller increments (`trial`, `rotation` in `*LIMITS`), or "// &
+          "accepted, and they are divided before the next one: what they were too long for "// &
+          "stays in their stresses.", "Smaller increments (`trial`, `rotation` in `*LIMITS`), or "// &
           "shorter elements at the start."), &
       row("W118", "elements that are not divided further", &
           "The sheet is bent by more than 1.5 times `adaptive_angle` over elements of the "// &
-          "highest level, or of the least length, at the end of the phase. Where a tool enters the sheet "// &
-          "between its nodes, W109 tells it instead.", &
+          "highest level, or of the least length, at the end of the phase. Where a tool enters "// &
+          "the sheet between its nodes, W109 tells it instead.", &
           "The `adaptive` or `adaptive_size` that the message gives.")]
   end function run_warnings
 

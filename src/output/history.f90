@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> history.csv: travel, displacements and forces of the tools, the quantities of the node sets of
-!> *HISTORY, energies and the number of elements. One row for the initial state and for every n-th accepted increment; the last state
-!> of a phase and of the run always has a row. All ranks evaluate the rows, the first writes them.
+!> *HISTORY, energies and the number of elements. One row for the initial state and for every n-th
+!> accepted increment; the last state of a phase and of the run always has a row. All ranks evaluate
+!> the rows, the first writes them.
 module dd3_output_history
   use dd3_base_kinds, only : pi, wp
   use dd3_base_error, only : error_t, share_error

@@ -17,8 +17,8 @@ module dd3_output_status
   character(len=*), parameter :: names = "increment,attempt,phase,travel,r,limiter,iterations,"// &
     "criterion,solver_iterations,gap,stick,slip,outcome,reason,seconds,limiter_element,"// &
     "limiter_point,limiter_node,limiter_tool,worst_node,worst_residual,worst_element,"// &
-    "worst_point,solver,r_force,force_node,force_tool,force_size,shortened,perturbed,eliminated,"// &
-    "elements"
+    "worst_point,solver,r_force,force_node,force_tool,force_size,shortened,perturbed,"// &
+    "eliminated,elements"
 
   !> Lower bound of values of r that stand for no limit.
   real(wp), parameter :: unlimited = 1.0e99_wp

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> The sheet as a membrane between tools: the least sum of squares of the slopes of its height over a
-!> grid in the plane, between the heights of the tools below and above it. A rough shape of the sheet
-!> that needs no mechanics.
+!> The sheet as a membrane between tools: the least sum of squares of the slopes of its height over
+!> a grid in the plane, between the heights of the tools below and above it. A rough shape of the
+!> sheet that needs no mechanics.
 module dd3_run_membrane
   use dd3_base_kinds, only : pi, wp
   use dd3_model_model, only : model_t
@@ -15,7 +15,8 @@ module dd3_run_membrane
   !> Grid spacing over the length of the undivided elements, and most grid points in a direction.
   real(wp), parameter :: spacing = 0.5_wp
   integer, parameter :: most_points = 200
-  !> Distance of the points of a patch over the spacing of the grid, and most of them in a direction.
+  !> Distance of the points of a patch over the spacing of the grid, and most of them in a
+  !> direction.
   real(wp), parameter :: fineness = 0.5_wp
   integer, parameter :: most_on_patch = 400
   !> Sweeps of the over-relaxation.
