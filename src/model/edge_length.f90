@@ -5,7 +5,7 @@ module dd3_model_edge_length
   use dd3_model_mesh_data, only : mesh_data_t
   implicit none
   private
-  public :: edge_lengths, undivided_length
+  public :: edge_lengths, longest_edge, undivided_length
 
 contains
 
@@ -24,6 +24,23 @@ contains
       end associate
     end do
   end function edge_lengths
+
+  !> Return the longest initial edge that an element had before it was divided, mm.
+  pure real(wp) function longest_edge(mesh)
+    class(mesh_data_t), intent(in) :: mesh
+
+    real(wp) :: edge
+    integer :: e, i
+
+    longest_edge = 0.0_wp
+    do e = 1, mesh%n_element
+      associate (node => mesh%connectivity(:4, e))
+        edge = maxval([(norm2(mesh%x0(:, node(modulo(i, 4) + 1)) - mesh%x0(:, node(i))), i=1, 4)])
+      end associate
+      if (allocated(mesh%level)) edge = edge*2.0_wp**mesh%level(e)
+      longest_edge = max(longest_edge, edge)
+    end do
+  end function longest_edge
 
   !> Return the mean of the initial edges that the elements had before they were divided, mm.
   pure real(wp) function undivided_length(mesh)

@@ -19,7 +19,7 @@ module dd3_run_adaptivity
   use dd3_base_kinds, only : pi, wp
   use dd3_base_ranks, only : broadcast_integers
   use dd3_input_case, only : case_t
-  use dd3_model_edge_length, only : edge_lengths
+  use dd3_model_edge_length, only : edge_lengths, longest_edge
   use dd3_model_model, only : model_t
   use dd3_model_redistribution, only : divide_model, move_state
   use dd3_model_refined_state, only : refined_state, sheet_of
@@ -85,16 +85,17 @@ contains
     type(model_t), intent(in) :: model
     type(adaptive_spec_t), intent(in) :: spec
 
-    integer :: l, tool
+    integer :: l, coarsest, tool
 
     self%spec = spec
     self%spec%angle = spec%angle*pi/180.0_wp
     if (spec%levels == 0) return
     self%length = model%undivided_length
+    coarsest = -ceiling(log(longest_edge(model)/self%length)/log(2.0_wp) - round_off)
     allocate (self%field(model%n_tool))
     do tool = 1, model%n_tool
       call new_turn_field(self%field(tool), model%tool(tool)%surface, &
-          [(self%length*0.5_wp**l, l=spec%levels, 0, -1)])
+          [(self%length*0.5_wp**l, l=spec%levels, coarsest, -1)])
     end do
   end subroutine new_adaptivity
 

@@ -203,7 +203,7 @@ contains
 
       meets = .false.
       x = [self%corner + (real([i, j], wp) - 0.5_wp)*self%step, self%z(i, j)]
-      reach = 0.5_wp*self%step + model%undivided_length*(ahead + 0.5_wp*0.5_wp**level)
+      reach = 0.5_wp*self%step + model%undivided_length*0.5_wp**level*(ahead + 0.5_wp)
       do tool = 1, model%n_tool
         if (.not. model%phase(number)%acts(tool)) cycle
         placement = state%placement(tool)
