@@ -53,7 +53,7 @@ def main():
             failed += 1
             print(f"{name}: {punch} and {die} patches, travel {found}; expected {most_punch}, {most_die}, {travel}")
         start = time.perf_counter()
-        settings = [] if options.defaults else ["--set", f"divisions={DIVISIONS[name]}"]
+        settings = [] if options.defaults else ["--set", f"divisions={DIVISIONS[name]}", "--set", "levels=0"]
         done = subprocess.run([options.program, *settings, folder / name / "draw.dat"], capture_output=True, text=True, check=False)
         job = read_job(folder / name / "draw.out")
         if done.returncode or job["outcome"]["state"] != "reached":
