@@ -31,7 +31,9 @@ def main():
     subprocess.run([sys.executable, cup / "step_files.py", cup / "cad"], check=True)
     unfold.main([str(cup / "cad" / "part.step"), str(cup / "outline.txt"), "--side", "upper", "--exponent", "0.26",
                  "--r", "1.8"])
-    found = outline.find_outline(options.program, read_process(cup / "flanged.toml"), "outline", None,
+    process = read_process(cup / "flanged.toml")
+    process.operations[0].settings.update(divisions="25 25 1", levels=0)
+    found = outline.find_outline(options.program, process, "outline", None,
                                  cup / "flange.txt", 5, 0.3)
     check(found[-1][0] <= 0.5 < found[0][0] <= 3, f"outline: {found}")
     sys.stdout.flush()
