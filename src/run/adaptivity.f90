@@ -59,10 +59,8 @@ module dd3_run_adaptivity
   type :: adaptivity_t
     !> Settings, with the angle in rad.
     type(adaptive_spec_t) :: spec
-    !> Turn of each tool over the lengths of the elements of all levels, `(n_tool)`.
+    !> Turn of each tool over the edges of the elements of all levels, `(n_tool)`.
     type(turn_field_t), allocatable :: field(:)
-    !> Mean length of the undivided elements, mm.
-    real(wp) :: length = 0.0_wp
     !> Elements to be divided before the next increment, `(n_element)`; not allocated without one.
     logical, allocatable :: waiting(:)
     !> Increments made again since the last one that was accepted.
@@ -90,13 +88,14 @@ contains
     self%spec = spec
     self%spec%angle = spec%angle*pi/180.0_wp
     if (spec%levels == 0) return
-    self%length = model%undivided_length
-    coarsest = -ceiling(log(longest_edge(model)/self%length)/log(2.0_wp) - round_off)
     allocate (self%field(model%n_tool))
-    do tool = 1, model%n_tool
-      call new_turn_field(self%field(tool), model%tool(tool)%surface, &
-          [(self%length*0.5_wp**l, l=spec%levels, coarsest, -1)])
-    end do
+    associate (length => model%undivided_length)
+      coarsest = -ceiling(log(longest_edge(model)/length)/log(2.0_wp) - round_off)
+      do tool = 1, model%n_tool
+        call new_turn_field(self%field(tool), model%tool(tool)%surface, &
+            [(length*0.5_wp**l, l=spec%levels, coarsest, -1)])
+      end do
+    end associate
   end subroutine new_adaptivity
 
   !> Whether elements may be divided in the running phase: not once the tools leave the sheet.
@@ -138,21 +137,21 @@ contains
     free = divisible(self, model, state)
     associate (angle => self%spec%angle)
       call turn_of_sheet(model, state%x, of_sheet)
-      call turn_of_tools_ahead(model, state, self%field, free, near, &
-          near_rotation*angle, of_tools)
+      call turn_of_tools_ahead(model, state, self%field, free, near, near_rotation*angle, of_tools)
       call find_compressed(model, state, compressed, yielding)
       too_long = edge_lengths(model, state%x) > longest*model%thickness
       if (.not. any(agreed_marks(marked .or. (free .and. (max(of_sheet, of_tools) > over*angle &
           .or. (too_long .and. yielding)))))) return
-      call turn_of_tools_ahead(model, state, self%field, free, ahead, &
-          rotation_ahead*angle, of_tools)
+      call turn_of_tools_ahead(model, state, self%field, free, ahead, rotation_ahead*angle, &
+          of_tools)
       marked = agreed_marks(marked .or. (free .and. (max(of_sheet, of_tools) > angle .or. &
           (too_long .and. compressed))))
     end associate
   end subroutine find_marks
 
   !> Judge a converged increment: too late if the sheet turns by far more than the angle over an
-  !> element that may be divided. It is not after `most_returns` repetitions.
+  !> element that may be divided; then all above the angle are divided before it is made again. It
+  !> is not too late after `most_returns` repetitions.
   subroutine judge(self, model, trial, too_late)
     class(adaptivity_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -169,16 +168,16 @@ contains
       return
     end if
     call turn_of_sheet(model, trial%x, turn)
-    marked = agreed_marks(turn > too_far*self%spec%angle .and. divisible(self, model, trial))
-    too_late = any(marked) .and. self%returns < most_returns
-    if (any(marked) .and. .not. too_late) then
-      self%n_late = count(marked)
-      self%late_turn = maxval(turn, marked)
-    end if
-    if (too_late) then
-      self%waiting = marked
+    marked = turn > self%spec%angle .and. divisible(self, model, trial)
+    if (.not. any(agreed_marks(marked .and. turn > too_far*self%spec%angle))) then
+      self%returns = 0
+    else if (self%returns < most_returns) then
+      too_late = .true.
+      self%waiting = agreed_marks(marked)
       self%returns = self%returns + 1
     else
+      self%n_late = count(marked)
+      self%late_turn = maxval(turn, marked)
       self%returns = 0
     end if
   end subroutine judge
