@@ -9,8 +9,8 @@ from dd3.errors import Problem
 from dd3.tools.blocks import read_blocks
 
 # Elements of the undivided blank at most, about; least length of these over the thickness, and over the radius of the
-# shoulder; length of the smallest elements over these two, at which an element on the shoulder turns by 14 degrees.
-ELEMENTS, OF_THICKNESS, OF_SHOULDER, SMALLEST, LEVELS = 1000, 4.0, 1.0, 0.25, 4
+# shoulder; length of the smallest elements over these two: a third of the radius, which is 19 degrees.
+ELEMENTS, OF_THICKNESS, OF_SHOULDER, SMALLEST, LEVELS = 1000, 4.0, 4 / 3, 0.25, 4
 # Pressure of the holder, MPa.
 PRESSURE = 2.0
 # Share of a level that is round-off.
