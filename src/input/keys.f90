@@ -5,6 +5,7 @@ module dd3_input_keys
   use dd3_base_parameter, only : parameter_t, row, kind_real, kind_integer, kind_logical, &
       kind_name, kind_text, kind_reals, kind_integers, kind_names, kind_law, kind_other
   use dd3_settings_accuracy, only : accuracy_names, default_by_accuracy
+  use dd3_settings_adaptive, only : most_levels
   implicit none
   private
   public :: blank_keys, mesh_keys, start_keys, trim_keys, set_keys, material_keys, tool_keys, &
@@ -91,7 +92,7 @@ contains
     key = [ &
       row("adaptive", kind_integer, "", "0", "times that an element may be divided into four "// &
           "where it comes to lie on a radius of a tool, or is bent; 0: never", lower=zero, &
-          upper=4.0_wp), &
+          upper=real(most_levels, wp)), &
       row("adaptive_angle", kind_real, "degrees", "15", "angle by which the sheet may turn over "// &
           "an element that may be divided", lower=1.0_wp, upper=60.0_wp), &
       row("adaptive_size", kind_real, "mm", "0", "least length of an element that comes from a division", &

@@ -146,8 +146,8 @@ contains
           "Compare with tools withdrawn in another order by `move`; a smaller `trial`."), &
       row("W117", "elements divided too late", &
           "An increment was made again on finer meshes as often as allowed and still bends the "// &
-          "sheet by more than `adaptive_angle` over elements that could be divided. It is "// &
-          "accepted, and they are divided before the next one: what they were too long for "// &
+          "sheet by more than 1.3 times `adaptive_angle` over elements that could be divided. It "// &
+          "is accepted, and they are divided before the next one: what they were too long for "// &
           "stays in their stresses.", "Smaller increments (`trial`, `rotation` in `*LIMITS`), or "// &
           "shorter elements at the start."), &
       row("W118", "elements that are not divided further", &

@@ -16,7 +16,7 @@ module dd3_model_contact_results
   implicit none
   private
   public :: candidate_hits, nearest_candidate, nearest_t
-  public :: contact_gaps, contact_pressures, tool_contact_t, tool_contacts
+  public :: contact_gaps, contact_pressures, tool_contact_t, tool_contacts, touching_tools
 
   !> Contact of a tool: area, mm2, and largest pressure, MPa.
   type :: tool_contact_t
@@ -102,6 +102,20 @@ contains
       pressure = 0.0_wp
     end where
   end function contact_pressures
+
+  !> Return the tool that each node touches, `(n_node)`; 0 for none.
+  function touching_tools(model, state) result(tool)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, allocatable :: tool(:)
+
+    allocate (tool(model%n_node), source=0)
+    associate (n => model%n_contact_node)
+      tool(model%contact_node(:n)) = &
+          merge(state%contact%tool(:n), 0, state%contact%status(:n) /= status_gap)
+    end associate
+    call largest_over_ranks(size(tool), tool)
+  end function touching_tools
 
   !> Return the contact of each tool, `(n_tool)`.
   function tool_contacts(model, state) result(contact)

@@ -3,15 +3,14 @@
 module dd3_model_mesh_change
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
+  use dd3_settings_adaptive, only : most_levels
   implicit none
   private
   public :: mesh_change_t, n_integer, n_real, levels_text, count_levels
   public :: packed_integers, packed_reals, unpacked
 
-  !> Highest level of an element.
-  integer, parameter :: highest = 4
   !> Integers and reals of a refinement in a restart file.
-  integer, parameter :: n_integer = highest + 6, n_real = 3
+  integer, parameter :: n_integer = most_levels + 6, n_real = 3
 
   !> A refinement.
   type :: mesh_change_t
@@ -20,7 +19,7 @@ module dd3_model_mesh_change
     !> Progress in the phase, 0 to 1, and travel since the start of the job, mm.
     real(wp) :: progress = 0.0_wp, travel = 0.0_wp
     !> Numbers of elements before and after it; those of each level after it.
-    integer :: before = 0, after = 0, of_level(0:highest) = 0
+    integer :: before = 0, after = 0, of_level(0:most_levels) = 0
     !> Norm of the forces out of balance over that of the internal forces.
     real(wp) :: imbalance = 0.0_wp
     !> Whether the next increment had converged on the mesh before, and is made again.
@@ -36,11 +35,11 @@ contains
   pure function count_levels(level) result(number)
     !> `(n_element)`.
     integer, intent(in) :: level(:)
-    integer :: number(0:highest)
+    integer :: number(0:most_levels)
 
     integer :: l
 
-    number = [(count(level == l), l=0, highest)]
+    number = [(count(level == l), l=0, most_levels)]
   end function count_levels
 
   !> Return the numbers of elements by level, up to the highest level that has some.
@@ -81,7 +80,7 @@ contains
   pure integer function top_level(self)
     class(mesh_change_t), intent(in) :: self
 
-    do top_level = highest, 1, -1
+    do top_level = most_levels, 1, -1
       if (self%of_level(top_level) > 0) return
     end do
   end function top_level

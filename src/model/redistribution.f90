@@ -7,9 +7,8 @@ module dd3_model_redistribution
   use dd3_base_ranks, only : broadcast_reals
   use dd3_model_contact_points, only : keep_own_points, set_point_owners
   use dd3_model_model, only : model_t
-  use dd3_model_part, only : part_t
+  use dd3_model_part_visitor, only : part_visitor_t
   use dd3_model_state, only : new_state, state_t
-  use dd3_model_state_visitor, only : state_visitor_t
   use dd3_model_state_walk, only : visit_state
   implicit none
   private
@@ -20,19 +19,19 @@ module dd3_model_redistribution
     real(wp), allocatable :: value(:)
   end type component_t
 
-  !> Visitor with the components of a whole state, in the order of the walk.
-  type, extends(state_visitor_t), abstract :: mover_t
-    type(part_t) :: part
+  !> Visitor with the components of a whole state as real numbers, in the order of the walk.
+  type, extends(part_visitor_t), abstract :: mover_t
     type(component_t), allocatable :: component(:)
     !> Components visited.
     integer :: n = 0
+  contains
+    procedure :: integers
   end type mover_t
 
   !> Visitor that takes the components from a state.
   type, extends(mover_t) :: taker_t
   contains
     procedure :: reals => take_reals
-    procedure :: integers => take_integers
     procedure :: reals_of_items => take_reals_of_items
     procedure :: integers_of_items => take_integers_of_items
   end type taker_t
@@ -41,9 +40,6 @@ module dd3_model_redistribution
   type, extends(mover_t) :: giver_t
   contains
     procedure :: reals => give_reals
-    procedure :: integers => give_integers
-    procedure :: reals_of_items => give_reals_of_items
-    procedure :: integers_of_items => give_integers_of_items
   end type giver_t
 
 contains
@@ -77,6 +73,20 @@ contains
     call visit_state(new, giver)
   end subroutine move_state
 
+  !> Visit a component of integers.
+  subroutine integers(self, name, n, values)
+    class(mover_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: n
+    integer, intent(inout) :: values(n)
+
+    real(wp) :: number(n)
+
+    number = real(values, wp)
+    call self%reals(name, n, number)
+    values = nint(number)
+  end subroutine integers
+
   !> Take a component of real numbers.
   subroutine take_reals(self, name, n, values)
     class(taker_t), intent(inout) :: self
@@ -98,19 +108,6 @@ contains
     self%n = self%n + 1
     self%component(self%n)%value = values
   end subroutine take_reals
-
-  !> Take a component of integers.
-  subroutine take_integers(self, name, n, values)
-    class(taker_t), intent(inout) :: self
-    character(len=*), intent(in) :: name
-    integer, intent(in) :: n
-    integer, intent(inout) :: values(n)
-
-    real(wp), allocatable :: number(:)
-
-    number = real(values, wp)
-    call self%reals(name, n, number)
-  end subroutine take_integers
 
   !> Take real numbers of all elements or contact points, from the ranks that hold them.
   subroutine take_reals_of_items(self, item, name, n, n_item, values)
@@ -164,51 +161,5 @@ contains
     self%n = self%n + 1
     values = self%component(self%n)%value
   end subroutine give_reals
-
-  !> Give a component of integers.
-  subroutine give_integers(self, name, n, values)
-    class(giver_t), intent(inout) :: self
-    character(len=*), intent(in) :: name
-    integer, intent(in) :: n
-    integer, intent(inout) :: values(n)
-
-    real(wp) :: number(n)
-
-    call self%reals(name, n, number)
-    values = nint(number)
-  end subroutine give_integers
-
-  !> Give real numbers of the elements or contact points of this rank.
-  subroutine give_reals_of_items(self, item, name, n, n_item, values)
-    class(giver_t), intent(inout) :: self
-    !> `of_elements` or `of_points`.
-    integer, intent(in) :: item
-    character(len=*), intent(in) :: name
-    !> Number of values of an item, and of the items of this rank.
-    integer, intent(in) :: n, n_item
-    real(wp), intent(inout) :: values(n, n_item)
-
-    real(wp), allocatable :: all(:, :)
-
-    allocate (all(n, size(self%part%ranks_of(item))), source=0.0_wp)
-    call self%reals(name, size(all), all)
-    values = all(:, self%part%own(item))
-  end subroutine give_reals_of_items
-
-  !> Give integers of the elements or contact points of this rank.
-  subroutine give_integers_of_items(self, item, name, n, n_item, values)
-    class(giver_t), intent(inout) :: self
-    !> `of_elements` or `of_points`.
-    integer, intent(in) :: item
-    character(len=*), intent(in) :: name
-    !> Number of values of an item, and of the items of this rank.
-    integer, intent(in) :: n, n_item
-    integer, intent(inout) :: values(n, n_item)
-
-    real(wp) :: number(n, n_item)
-
-    call self%reals_of_items(item, name, n, n_item, number)
-    values = nint(number)
-  end subroutine give_integers_of_items
 
 end module dd3_model_redistribution

@@ -3,8 +3,8 @@
 module dd3_model_sheet_compression
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : largest_over_ranks, sum_over_ranks
-  use dd3_contact_operator, only : status_gap
   use dd3_linalg_tensor, only : symmetric_eigen, tensor_from_kelvin
+  use dd3_model_contact_results, only : touching_tools
   use dd3_model_element_columns, only : element_columns_t, new_element_columns
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
@@ -35,8 +35,9 @@ contains
     real(wp), allocatable :: least(:), difference(:)
     integer, allocatable :: plastic(:)
     logical, allocatable :: found(:)
+    logical :: touches(model%n_node)
     real(wp) :: values(3), vectors(3, 3)
-    integer :: touching(model%n_node), e, k
+    integer :: e, k
 
     call new_element_columns(quad, model)
     allocate (stress(6, quad%n), least(quad%n), difference(quad%n), source=0.0_wp)
@@ -53,15 +54,11 @@ contains
       least(k) = minval(values)
       difference(k) = maxval(values) - least(k)
     end do
-    touching = 0
-    associate (n => model%n_contact_node)
-      touching(model%contact_node(:n)) = merge(1, 0, state%contact%status(:n) /= status_gap)
-    end associate
-    call largest_over_ranks(size(touching), touching)
+    touches = touching_tools(model, state) > 0
     found = -least > max(of_own*difference, of_largest*maxval(difference))
     do k = 1, quad%n
       associate (column => model%column(:, quad%corner(:, k)))
-        if (all(touching(column(1, :)) + touching(column(2, :)) == 2)) found(k) = .false.
+        if (all(touches(column(1, :)) .and. touches(column(2, :)))) found(k) = .false.
       end associate
     end do
     compressed = found(quad%of_element)

@@ -6,9 +6,8 @@ module dd3_output_restart_read
   use dd3_base_text, only : to_text
   use dd3_model_fingerprint, only : changed_parts, fingerprint_t, model_fingerprint
   use dd3_model_model, only : model_t
-  use dd3_model_part, only : part_t
+  use dd3_model_part_visitor, only : part_visitor_t
   use dd3_model_state, only : new_state, state_t
-  use dd3_model_state_visitor, only : state_visitor_t
   use dd3_model_state_walk, only : visit_state
   use dd3_output_hdf5_read, only : close_hdf5, dataset_size, read_integers, read_reals
   use dd3_output_restart_format, only : open_restart
@@ -18,16 +17,13 @@ module dd3_output_restart_read
   public :: read_restart
 
   !> Visitor that reads the components from a group.
-  type, extends(state_visitor_t) :: reader_t
+  type, extends(part_visitor_t) :: reader_t
     integer(hid_t) :: file = -1
     !> What is wrong with the first unreadable component; empty if none is.
     character(len=:), allocatable :: problem
-    type(part_t) :: part
   contains
     procedure :: reals => reader_reals
     procedure :: integers => reader_integers
-    procedure :: reals_of_items => reader_reals_of_items
-    procedure :: integers_of_items => reader_integers_of_items
   end type reader_t
 
 contains
@@ -163,40 +159,6 @@ contains
     call read_integers(self%file, "state/"//name, values, ok)
     if (.not. ok) call note_problem(self, "component '"//name//"' cannot be read")
   end subroutine reader_integers
-
-  !> Read real numbers of the elements or contact points of this rank.
-  subroutine reader_reals_of_items(self, item, name, n, n_item, values)
-    class(reader_t), intent(inout) :: self
-    !> `of_elements` or `of_points`.
-    integer, intent(in) :: item
-    character(len=*), intent(in) :: name
-    !> Number of values of an item, and of the items of this rank.
-    integer, intent(in) :: n, n_item
-    real(wp), intent(inout) :: values(n, n_item)
-
-    real(wp), allocatable :: all(:, :)
-
-    allocate (all(n, size(self%part%ranks_of(item))), source=0.0_wp)
-    call self%reals(name, size(all), all)
-    values = all(:, self%part%own(item))
-  end subroutine reader_reals_of_items
-
-  !> Read integers of the elements or contact points of this rank.
-  subroutine reader_integers_of_items(self, item, name, n, n_item, values)
-    class(reader_t), intent(inout) :: self
-    !> `of_elements` or `of_points`.
-    integer, intent(in) :: item
-    character(len=*), intent(in) :: name
-    !> Number of values of an item, and of the items of this rank.
-    integer, intent(in) :: n, n_item
-    integer, intent(inout) :: values(n, n_item)
-
-    integer, allocatable :: all(:, :)
-
-    allocate (all(n, size(self%part%ranks_of(item))), source=0)
-    call self%integers(name, size(all), all)
-    values = all(:, self%part%own(item))
-  end subroutine reader_integers_of_items
 
   !> Record a component of the wrong size.
   subroutine note_size(self, name, found, expected)

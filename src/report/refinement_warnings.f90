@@ -4,9 +4,8 @@
 module dd3_report_refinement_warnings
   use dd3_base_kinds, only : pi, wp
   use dd3_base_message, only : message_list_t
-  use dd3_base_ranks, only : largest_over_ranks
   use dd3_base_text, only : to_text
-  use dd3_contact_operator, only : status_gap
+  use dd3_model_contact_results, only : touching_tools
   use dd3_model_edge_length, only : edge_lengths
   use dd3_model_element_columns, only : n_corner
   use dd3_model_model, only : model_t
@@ -82,12 +81,7 @@ contains
     real(wp) :: radius, smallest
     logical :: changed
 
-    touching = 0
-    associate (n => model%n_contact_node)
-      touching(model%contact_node(:n)) = &
-          merge(state%contact%tool(:n), 0, state%contact%status(:n) /= status_gap)
-    end associate
-    call largest_over_ranks(size(touching), touching)
+    touching = touching_tools(model, state)
     tool = 0
     do e = 1, model%n_element
       if (.not. over(e)) cycle

@@ -3,13 +3,11 @@
 module dd3_report_suitable_levels
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
-  use dd3_settings_adaptive, only : adaptive_spec_t
+  use dd3_settings_adaptive, only : adaptive_spec_t, most_levels
   implicit none
   private
   public :: halvings, levels_advice
 
-  !> Most levels of the input.
-  integer, parameter :: most_levels = 4
   !> Excess of a ratio that is round-off.
   real(wp), parameter :: round_off = 1.0e-6_wp
 

@@ -4,11 +4,10 @@
 !> points between nodes, crossed.
 module dd3_report_tool_warnings
   use dd3_base_kinds, only : wp
-  use dd3_base_ranks, only : largest_over_ranks
   use dd3_base_message, only : message_list_t
   use dd3_base_text, only : to_text
-  use dd3_contact_operator, only : status_gap
-  use dd3_model_contact_results, only : candidate_hits, nearest_candidate, nearest_t
+  use dd3_model_contact_results, only : candidate_hits, nearest_candidate, nearest_t, &
+      touching_tools
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_process_open_edges, only : edge_name
@@ -207,7 +206,6 @@ contains
     integer, intent(in) :: a, b
     character(len=:), allocatable :: text
 
-    !> Tool in contact with each node; 0 for none.
     integer :: touching(model%n_node)
     integer :: node, pinched
 
@@ -218,12 +216,7 @@ contains
       if (any(phase%pressed([a, b]))) return
       if (norm2(phase%move(:, a) - phase%move(:, b)) <= 0.0_wp) return
     end associate
-    touching = 0
-    associate (n => model%n_contact_node)
-      touching(model%contact_node(:n)) = &
-          merge(state%contact%tool(:n), 0, state%contact%status(:n) /= status_gap)
-    end associate
-    call largest_over_ranks(size(touching), touching)
+    touching = touching_tools(model, state)
     pinched = 0
     do node = 1, model%n_node
       if (touching(node) /= a .or. model%opposite(node) == 0) cycle

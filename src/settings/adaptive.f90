@@ -5,7 +5,10 @@ module dd3_settings_adaptive
   use dd3_base_kinds, only : wp
   implicit none
   private
-  public :: adaptive_spec_t
+  public :: adaptive_spec_t, most_levels
+
+  !> Most times that an element may be divided.
+  integer, parameter :: most_levels = 4
 
   !> Settings of the refinement.
   type :: adaptive_spec_t

@@ -9,7 +9,8 @@ from dd3.errors import Problem
 from dd3.tools.blocks import read_blocks
 
 # Elements of the undivided blank at most, about; least length of these over the thickness, and over the radius of the
-# shoulder; length of the smallest elements over these two: a third of the radius, which is 19 degrees.
+# shoulder; length of the smallest elements over the larger of both, with which one turns by 19 degrees on the shoulder;
+# most levels.
 ELEMENTS, OF_THICKNESS, OF_SHOULDER, SMALLEST, LEVELS = 1000, 4.0, 4 / 3, 0.25, 4
 # Pressure of the holder, MPa.
 PRESSURE = 2.0
