@@ -116,7 +116,7 @@ contains
           "it "// &
           "passed between the nodes."), &
       row("W109", "tool between the nodes of the sheet", &
-          "Contact holds at the nodes: a tool with a small radius enters the faces between them.", &
+          "Contact holds at its points: a tool with a small radius enters the faces between them.", &
           "Elements of the length that the message gives, in a run with refinement by the "// &
           "`adaptive` that it gives; `points` in `*CONTACT`."), &
       row("W110", "sheet beyond an open edge of a tool", &

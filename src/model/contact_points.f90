@@ -12,7 +12,8 @@ module dd3_model_contact_points
   use dd3_model_part, only : of_points
   implicit none
   private
-  public :: set_contact_points, set_point_owners, keep_own_points, point_areas, nodal_areas
+  public :: set_contact_points, set_point_owners, keep_own_points, points_of_face, point_areas, &
+      nodal_areas
 
   !> Length over the thickness beyond which an edge of the mesh has contact with borders of its own.
   !> The nodes of shorter ones follow the rounding of the border, whose radius is half a thickness.
@@ -125,6 +126,30 @@ contains
     model%n_contact_fixed = count(kept <= model%n_contact_fixed)
     model%n_contact = size(kept)
   end subroutine keep_own_points
+
+  !> Return the contact points of a face with four nodes, also those of another rank, row by row, mm.
+  pure function points_of_face(model, x, k) result(points)
+    type(model_t), intent(in) :: model
+    !> Positions of the nodes, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
+    !> Number among the contact faces.
+    integer, intent(in) :: k
+    real(wp) :: points(3, size(model%face_point, 1))
+
+    type(surface_point_t) :: point
+    integer :: divisions, i, j
+
+    divisions = nint(sqrt(real(size(model%face_point, 1), wp))) - 1
+    associate (corner => model%face%corner(:, model%contact_face(k)))
+      do j = 0, divisions
+        do i = 0, divisions
+          point = face_point(corner, model%opposite(corner), real(i, wp)/real(divisions, wp), &
+              real(j, wp)/real(divisions, wp))
+          points(:, 1 + i + (divisions + 1)*j) = point%position(x)
+        end do
+      end do
+    end associate
+  end function points_of_face
 
   !> Set the places of the nodes of each point in its element. A node that belongs to no face gets
   !> an element at it.

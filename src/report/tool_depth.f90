@@ -1,12 +1,14 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Depth by which tools enter the faces of the sheet between its contact points, at which alone the
 !> contact holds: a tool can pass a face where it is more strongly curved than they resolve, or
-!> narrower than an element.
+!> narrower than their distance. The faces are quadrilaterals between these points, which lie on
+!> curved faces (surface_point.f90).
 !> Measured both ways: points of the faces inside the tool, and points of the tool behind the faces.
 module dd3_report_tool_depth
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : broadcast_reals, rank_of_smallest, this_rank
   use dd3_linalg_tensor, only : cross
+  use dd3_model_contact_points, only : points_of_face
   use dd3_model_model, only : model_t
   use dd3_model_sheet_faces, only : face_normal, part_of_nine
   use dd3_model_state, only : state_t
@@ -44,7 +46,7 @@ module dd3_report_tool_depth
     real(wp) :: x(3) = 0.0_wp
   end type tool_depth_t
 
-  !> A face of the sheet, or a quarter of one with 9 nodes, in the frame of a tool.
+  !> Part of a face of the sheet between four contact points, in the frame of a tool.
   type :: face_t
     integer :: number = 0
     !> Corners, mm, and outward unit normal.
@@ -87,28 +89,26 @@ contains
   end subroutine observe_tools
 
   !> Measure the depth of a tool in the faces whose nodes are its candidates, each rank in those of
-  !> its elements. Those with 9 nodes are curved; they are measured in four quadrilaterals.
+  !> its elements: in the quadrilaterals between the contact points.
   function measure_tool_depth(model, state, tool) result(self)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     integer, intent(in) :: tool
     type(tool_depth_t) :: self
 
-    integer :: f, i, rank
+    integer :: f, k, rank
 
     rank = this_rank()
     self%depth = slight_depth*model%thickness
-    do f = 1, model%face%n
+    do k = 1, size(model%contact_face)
+      f = model%contact_face(k)
       if (model%part%owner(model%face%element(f)) /= rank) cycle
-      associate (node => model%face%node(:, f))
-        if (size(node) == 9) then
-          do i = 1, 4
-            call probe_face(self, model, state, tool, f, node(part_of_nine(:, i)))
-          end do
-        else
-          call probe_face(self, model, state, tool, f, node(:4))
-        end if
-      end associate
+      if (.not. all(model%member(tool, model%face%node(:, f)))) cycle
+      if (size(model%face%node, 1) > 4) then
+        call probe_quadratic_face(self, model, state, tool, k)
+      else
+        call probe_divided_face(self, model, state, tool, k)
+      end if
     end do
     if (self%face == 0) self%depth = 0.0_wp
     if (model%part%divided) call share_deepest(self)
@@ -125,13 +125,85 @@ contains
     self = tool_depth_t(values(1), nint(values(2)), values(3:))
   end subroutine share_deepest
 
-  !> Measure the depth of a tool in a face, or a part of it.
-  pure subroutine probe_face(self, model, state, tool, f, node)
+  !> Measure the depth of a tool in a face with 9 nodes, or between the corners of one with 8.
+  pure subroutine probe_quadratic_face(self, model, state, tool, k)
     type(tool_depth_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
-    !> Tool, face, and its corners or those of its part.
-    integer, intent(in) :: tool, f, node(4)
+    !> Tool, and number among the contact faces.
+    integer, intent(in) :: tool, k
+
+    integer :: i
+
+    associate (node => model%face%node(:, model%contact_face(k)))
+      if (size(node) < 9) then
+        call probe_part(self, model, state, tool, k, state%x(:, node(:4)), model%face_point(:4, k))
+        return
+      end if
+      do i = 1, 4
+        associate (part => part_of_nine(:, i))
+          call probe_part(self, model, state, tool, k, state%x(:, node(part)), &
+              model%face_point(part, k))
+        end associate
+      end do
+    end associate
+  end subroutine probe_quadratic_face
+
+  !> Measure the depth of a tool in a face with 4 nodes, which is curved between them where contact
+  !> points are.
+  pure subroutine probe_divided_face(self, model, state, tool, k)
+    type(tool_depth_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    !> Tool, and number among the contact faces.
+    integer, intent(in) :: tool, k
+
+    real(wp) :: x(3, size(model%face_point, 1))
+    integer :: part(4), n, i, j
+
+    n = nint(sqrt(real(size(model%face_point, 1), wp)))
+    if (is_far(model, state, tool, model%face%corner(:, model%contact_face(k)))) return
+    x = points_of_face(model, state%x, k)
+    do j = 1, n - 1
+      do i = 1, n - 1
+        part = i + n*(j - 1) + [0, 1, n + 1, n]
+        call probe_part(self, model, state, tool, k, x(:, part), model%face_point(part, k))
+      end do
+    end do
+  end subroutine probe_divided_face
+
+  !> Whether no patch of a tool is within the size of a face.
+  pure logical function is_far(model, state, tool, corner)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: tool, corner(4)
+
+    type(placement_t) :: placement
+    real(wp) :: x(3, 4), reach
+    integer :: i
+
+    placement = state%placement(tool)
+    do i = 1, 4
+      x(:, i) = placement%to_tool(state%x(:, corner(i)))
+    end do
+    associate (surface => model%tool(tool)%surface, size => norm2(x(:, 3) - x(:, 1)))
+      reach = max(wrong_side_depth*model%thickness_at(corner(1)), 2.0_wp*size)
+      is_far = any(minval(x, dim=2) - reach > surface%upper .or. &
+          maxval(x, dim=2) + reach < surface%lower)
+    end associate
+  end function is_far
+
+  !> Measure the depth of a tool in a part of a face.
+  pure subroutine probe_part(self, model, state, tool, k, x, point)
+    type(tool_depth_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    !> Tool, and number among the contact faces.
+    integer, intent(in) :: tool, k
+    !> Corners, mm.
+    real(wp), intent(in) :: x(3, 4)
+    !> Contact points at them; 0 for those of another rank.
+    integer, intent(in) :: point(4)
 
     type(face_t) :: face
     type(hint_t) :: hint(4)
@@ -139,42 +211,38 @@ contains
     integer :: i
     logical :: near
 
-    if (.not. all(model%member(tool, node))) return
-    call set_face(face, model, state, tool, f, node)
+    call set_face(face, model, state%placement(tool), model%contact_face(k), x)
     call probe_patches(self, model, face, tool, near)
     if (.not. near) return
     do i = 1, 4
-      associate (c => model%candidate_of(node(i)))
-        if (c > 0) then
-          hint(i) = state%contact%hint(tool, c)
-        else
-          ! The node is one of another rank.
-          call find_contact(model%tool(tool)%surface, face%x(:, i), hint(i), face%size, face%size, &
-              hit)
-        end if
-      end associate
+      if (point(i) > 0) then
+        hint(i) = state%contact%hint(tool, point(i))
+      else
+        call find_contact(model%tool(tool)%surface, face%x(:, i), hint(i), face%size, face%size, &
+            hit)
+      end if
     end do
     call probe_tool(self, model, face, hint, tool)
-  end subroutine probe_face
+  end subroutine probe_part
 
-  !> Set a face in the frame of a tool.
-  pure subroutine set_face(self, model, state, tool, f, node)
+  !> Set a part of a face in the frame of a tool.
+  pure subroutine set_face(self, model, placement, f, x)
     type(face_t), intent(out) :: self
     type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    integer, intent(in) :: tool, f, node(4)
+    type(placement_t), intent(in) :: placement
+    integer, intent(in) :: f
+    !> Corners, mm.
+    real(wp), intent(in) :: x(3, 4)
 
-    type(placement_t) :: placement
     integer :: i
 
     self%number = f
-    placement = state%placement(tool)
     do i = 1, 4
-      self%x(:, i) = placement%to_tool(state%x(:, node(i)))
+      self%x(:, i) = placement%to_tool(x(:, i))
     end do
     self%normal = face_normal(self%x)
     self%size = max(norm2(self%x(:, 3) - self%x(:, 1)), norm2(self%x(:, 4) - self%x(:, 2)))
-    self%thickness = model%thickness_at(node(1))
+    self%thickness = model%thickness_at(model%face%corner(1, f))
     self%search_depth = max(wrong_side_depth*self%thickness, self%size)
     self%lower = minval(self%x, dim=2) - self%search_depth*max(self%normal, 0.0_wp) &
         - beside*self%size
