@@ -76,6 +76,8 @@ PAGES = {
         envelope("--compare compliant no_elimination no_line_search mixed mixed_no_line_search --ablation"))),
     "adaptive": Page(12, f"{MECHANICS} src/run/adaptivity.f90 src/sheet input_files/square_cup",
                      (f"tests/forming/adaptive.py{RUN}",)),
+    "examples": Page(60, f"{MECHANICS} src/run/adaptivity.f90 src/sheet input_files",
+                     (f"tests/forming/examples.py{RUN}",)),
     "answers": Page(2, "src tests/answers", (f"tests/answers/run.py{RUN}",)),
     "bending_criteria": Page(2, f"{BENDING} tests/cases/bending_criteria",
                              (f"tests/benchmark/bending_criteria.py{RUN}",)),
