@@ -58,14 +58,15 @@ contains
   end function levels_text
 
   !> Return the line of the log.
-  pure function report(self, phase) result(text)
+  pure function report(self, phase, by_tool) result(text)
     class(mesh_change_t), intent(in) :: self
-    !> Name of its phase.
+    !> Name of its phase, and whether a tool controls that, so that its travel tells the place.
     character(len=*), intent(in) :: phase
+    logical, intent(in) :: by_tool
     character(len=:), allocatable :: text
 
     text = "refined in phase '"//phase//"' after increment "//to_text(self%increment)//" at "
-    if (self%travel > 0.0_wp) then
+    if (by_tool) then
       text = text//to_text(self%travel, 4)//" mm"
     else
       text = text//to_text(100.0_wp*self%progress, 3)//" %"

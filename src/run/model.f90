@@ -262,7 +262,8 @@ contains
       if (allocated(error)) return
       run%trial = run%committed
       call add_change(model, run%committed, before, imbalance, again)
-      call log%say(model%change(size(model%change))%report(log%phase))
+      call log%say(model%change(size(model%change))%report(log%phase, &
+          model%phase(run%committed%phase)%control > 0))
       if (model%part%divided) call log%note(model%part%report())
     end do
   end subroutine adapt
