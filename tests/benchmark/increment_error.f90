@@ -3,11 +3,12 @@
 !> may estimate its error, and the error, the difference of the state after the same increment in
 !> equal parts, without other limits, and the corrected state.
 !>
-!>     benchmark_increment_error <parts> <stride> <input file> [name=value ...]
+!>     benchmark_increment_error <parts> <stride> <held> <input file> [name=value ...]
 !>
 !> The error is measured of every <stride>-th increment in which a tool controls the phase; without
-!> parts (0) only the estimates are evaluated. Prints a row of values, separated by commas, for each
-!> accepted increment, -1 for none:
+!> parts (0) only the estimates are evaluated. A controller holds the estimate (`linear`, root mean
+!> square of the sheet) at the value <held>, 0 for none, within the limits of the input. Prints a
+!> row of values, separated by commas, for each accepted increment, -1 for none:
 !> - `linear`: the predicted stress is that at the start and the rates there times the size,
 !> - `updated`: it is integrated for the predicted displacements,
 !> - `error`: the increment in parts.
@@ -17,7 +18,9 @@
 !> force. The root mean square (`rms`) and the 95th percentile (`p95`) of the stress are weighted by
 !> the volume of all points (`sheet`), of those in elements at whose contact points no status has
 !> changed (`quiet`), and of those among them that were plastic before and after or neither
-!> (`steady`). `places` is the rank correlation of `linear` with `error` over the points.
+!> (`steady`). `places` is the rank correlation of `linear` with `error` over the points,
+!> `tool_force` the force on the controlling tool along its motion.
+!> Source: G. Soederlind, ACM Trans. Math. Softw. 29 (2003) 1-26 (the controller H211b).
 program benchmark_increment_error
   use dd3_base_error, only : error_t
   use dd3_base_kinds, only : wp, pi
@@ -71,18 +74,34 @@ program benchmark_increment_error
     real(wp) :: displacement = -1.0_wp, contact = -1.0_wp, force = -1.0_wp
   end type difference_t
 
+  !> Controller of the size of the increments: next size, as progress of the phase; size and
+  !> estimate of the last increment that it has judged.
+  type :: controller_t
+    real(wp) :: next = 0.0_wp, size = 0.0_wp, estimate = 0.0_wp
+  end type controller_t
+
+  !> The digital filter H211b: b times the order of the estimate as the exponent's divisor, b, and
+  !> the bounds of the ratio of two sizes.
+  real(wp), parameter :: divisor = 8.0_wp, b = 4.0_wp, least_ratio = 0.2_wp, most_ratio = 2.0_wp
+  !> First size over the trial increment; smallest size over the intended one that is judged.
+  real(wp), parameter :: first_size = 0.25_wp, judged = 0.7_wp
+
   type(model_t) :: model
+  type(controller_t) :: controller
+  real(wp) :: held
   integer :: parts, stride
   character(len=:), allocatable :: text
 
-  if (command_argument_count() < 3) error stop &
-      "benchmark_increment_error <parts> <stride> <input file> [name=value ...]"
+  if (command_argument_count() < 4) error stop &
+      "benchmark_increment_error <parts> <stride> <held> <input file> [name=value ...]"
   text = argument(1)
   read (text, *) parts
   text = argument(2)
   read (text, *) stride
+  text = argument(3)
+  read (text, *) held
   call set_threads(1)
-  call read_model(model, 3)
+  call read_model(model, 4)
   print '(a)', "phase,increment,travel,progress,size,r,limiter,attempts,iterations,rotation,"// &
       "strain,changed,quiet_share,steady_share,tool_force"//columns("linear")// &
       columns("updated")//columns("error")//",places"
@@ -125,6 +144,7 @@ contains
     do number = 1, size(model%phase)
       call return_tools(model, number, committed)
       call begin_phase(model, number, committed)
+      controller = controller_t(next=first_size*model%phase(number)%trial)
       do while (.not. phase_is_over(model, committed))
         call measure_increment(stepper, committed, trial)
       end do
@@ -147,6 +167,8 @@ contains
 
     call prepare_increment(model, committed, stepper)
     if (stepper%attempt%verdict%outcome /= verdict_converged) error stop "no prediction"
+    if (controls(committed)) stepper%attempt%limit%r = min(stepper%attempt%limit%r, &
+        controller%next/stepper%prediction%progress)
     rate = stress_rate(stepper)
     iterations = 0
     call correct(stepper, committed, trial, iterations, done)
@@ -167,6 +189,8 @@ contains
       if (done) updated = difference(predicted, corrected, scale)
     end associate
     call accept_increment(model, trial, stepper, committed)
+    if (controls(committed)) &
+        call judge(controller, committed%progress - before%progress, linear%rms(1))
     associate (attempt => stepper%attempt)
       write (*, '(a, ",", i0, ",", 2(es15.8, ","), 2(es11.4, ","), a, ",", 2(i0, ","), ' // &
           '2(es11.4, ","), i0, ",", 2(f6.4, ","), es14.7)', advance="no") &
@@ -174,7 +198,7 @@ contains
           committed%progress, committed%progress - before%progress, attempt%limit%r, &
           trim(attempt%limit%limiter), attempt%number, iterations, rotation, strain, &
           scale%changed, sum(scale%volume, mask=scale%in_set(:, :, 2))/sum(scale%volume), &
-          sum(scale%volume, mask=scale%in_set(:, :, 3))/sum(scale%volume), scale%force
+          sum(scale%volume, mask=scale%in_set(:, :, 3))/sum(scale%volume), pressing(committed)
     end associate
     places = -1.0_wp
     if (parts > 0 .and. modulo(committed%increment, stride) == 0 &
@@ -190,6 +214,41 @@ contains
     end if
     print '(28(",", es11.4))', linear, updated, error, places
   end subroutine measure_increment
+
+  !> Whether the controller sets the size of the increments in the phase of a state.
+  logical function controls(state)
+    type(state_t), intent(in) :: state
+
+    controls = held > 0.0_wp .and. model%phase(state%phase)%control > 0
+  end function controls
+
+  !> Set the next size from the estimate of an increment. One that ended early, at an output or
+  !> where a tool met the sheet, is judged only if its estimate is too large.
+  subroutine judge(self, size, estimate)
+    type(controller_t), intent(inout) :: self
+    !> Progress of the phase in the increment.
+    real(wp), intent(in) :: size
+    real(wp), intent(in) :: estimate
+
+    real(wp) :: ratio
+
+    if (size < judged*self%next .and. estimate <= held) return
+    ratio = sqrt(held/estimate)
+    if (self%size > 0.0_wp) ratio = (held/estimate*held/self%estimate)**(1.0_wp/divisor) &
+        *(size/self%size)**(-1.0_wp/b)
+    self = controller_t(min(max(ratio, least_ratio), most_ratio)*size, size, estimate)
+  end subroutine judge
+
+  !> Return the force with which the controlling tool presses the sheet, N; 0 without one.
+  real(wp) function pressing(state)
+    type(state_t), intent(in) :: state
+
+    pressing = 0.0_wp
+    associate (phase => model%phase(state%phase))
+      if (phase%control > 0) pressing = abs(dot_product(phase%direction(:, phase%control), &
+          force_of(state%contact%lambda, state)))
+    end associate
+  end function pressing
 
   !> Return the change of the stress in the trial increment with the tangents of the predictor.
   function stress_rate(stepper) result(rate)

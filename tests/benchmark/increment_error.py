@@ -16,8 +16,9 @@ from pathlib import Path
 
 import increments
 import numpy as np
-from envelope import studies
-from increments import BASE, REPORT, TRIALS, folder_of, outcome
+from envelope import Results, studies
+from increments import BASE, REPORT, TRIALS, curve_error, folder_of, largest, outcome, reference_of
+from problems import merged
 
 from dd3.errors import Problem, run
 from dd3.pages import put_table
@@ -29,6 +30,8 @@ LEAST = 6  # values of a correlation
 NAMES = [name for name in TRIALS if name not in increments.SLOW]
 LEVELS = [f"accuracy = {level}" for level in increments.LEVELS]
 VARIED = [*LEVELS, "rotation = 8", "rotation = 2", "depth = 0.02", "r_max = 2", "r_max = 0.5"]  # for the error of a run
+HELD = (0.1, 0.05, 0.025)  # estimates that a controller holds
+FREE = ("strain = 0.4", "rotation = 12", "depth = 0.1", "r_max = 4")  # limits beside it
 STRIDES = {"accuracy = fine": 4}  # of the increments of which the error is measured; 1 with other limits
 SETS = {"rms_sheet": "stress, sheet", "rms_quiet": "no change of contact", "rms_steady": "nor of yielding",
         "p95_sheet": "95 %, sheet", "p95_quiet": "95 %, no change of contact", "displacement": "displacement",
@@ -41,25 +44,51 @@ GLOBAL = {"force curve": 0, "force": 1, "thickness": 2, "draw-in": 3}  # places 
 
 # ---- runs ------------------------------------------------------------------------------------------------------------
 
-def measured(options, lines, name):
-    """Measure the increments of a run in which a tool controls, unless that has been done; return their rows.
+def rows_of(options, name, folder, parts=0, stride=1, held=0.0):
+    """Run the benchmark on the deck in a folder, unless that has been done; return the rows in which a tool controls.
 
-    The run is made before, and gives its deck. The error of an increment is measured with the levels alone.
+    See increment_error.f90 for the arguments.
     """
-    outcome(options, lines, name)
-    parts = PARTS if lines in LEVELS else 0
-    folder = folder_of(options, lines, name)
-    path = folder / f"increment_error_{parts}.csv"
+    path = folder / (f"increments_held_{held:g}.csv" if held else f"increments_{parts}.csv")
     if not path.is_file():
         settings = [f"{key}={value}" for key, value in TRIALS[name].settings.items()]
-        done = launch([options.build / "tests" / "benchmark" / "benchmark_increment_error", str(parts),
-                       str(STRIDES.get(lines, 1)), folder / "deck.dat", *settings])
+        done = launch([options.build / "tests" / "benchmark" / "benchmark_increment_error", *map(str, (parts, stride, held)),
+                       folder / "deck.dat", *settings])
         if done.code:
             raise Problem(f"benchmark_increment_error, {folder}: exit code {done.code}\n{done.errors}")
         path.write_text(done.output, encoding="utf-8")
     with path.open(encoding="utf-8") as file:
-        rows = [row for row in csv.DictReader(file) if float(row["tool_force"]) > 0]
-    return rows
+        return [row for row in csv.DictReader(file) if float(row["tool_force"]) > 0]
+
+
+def measured(options, lines, name):
+    """Return the rows of a run, which is made before. The error of an increment is measured with the levels alone."""
+    outcome(options, lines, name)
+    return rows_of(options, name, folder_of(options, lines, name), PARTS if lines in LEVELS else 0,
+                   STRIDES.get(lines, 1))
+
+
+def held_rows(options, name, held):
+    """Return the rows of a run whose increments hold the estimate."""
+    folder = made_folder(folder_of(options, "held", name))
+    text = merged(TRIALS[name].job().deck(folder), "LIMITS", FREE)
+    (folder / "deck.dat").write_text(text, encoding="utf-8")
+    return rows_of(options, name, folder, held=held)
+
+
+def force_error(options, name, rows):
+    """Return the error of the force of rows, as outcome() has it: that of the curve, or without one the largest, %."""
+    trial = TRIALS[name]
+    exact, reference = reference_of(options, name)
+    tool = trial.curve[0] if trial.curve else "punch"
+    found = Results(reference.folder)
+    last = rows[-1]["phase"]
+    after = [row for row in found.history if float(row["travel"]) >= float(rows[-1]["travel"]) and row["phase"] != last]
+    found.history = [{"travel": row["travel"], f"{tool}_fz": row["tool_force"]} for row in rows] + after
+    if trial.curve:
+        return curve_error(found, reference, trial.curve)
+    values = {label: quantity(found) for label, quantity in trial.quantities["force"].items()}
+    return largest("force", values, values, exact)
 
 
 def column(rows, name):
@@ -136,6 +165,34 @@ def global_table(options, names):
     return studies.table(["problem", "sum of", "from, to", *GLOBAL], lines)
 
 
+def iterations(rows):
+    """Return the number of iterations of all attempts in rows."""
+    return sum(int(row["iterations"]) for row in rows)
+
+
+def control_table(options, names):
+    """Return the table of runs whose increments hold the estimate, beside those of limits with the same error."""
+    lines = []
+    for name in names:
+        place = 0 if TRIALS[name].curve else 1
+        front = []
+        for effort, error in sorted((iterations(measured(options, text, name)),
+                                     outcome(options, text, name).errors[place]) for text in VARIED):
+            if not front or error < front[-1][1]:
+                front.append((effort, error))
+        effort, error = np.log(np.array(front[::-1])).T
+        line = [name]
+        for held in HELD:
+            rows = held_rows(options, name, held)
+            here = force_error(options, name, rows)
+            line += [f"{here:.2f}", str(iterations(rows)),
+                     ("at most " if np.log(here) > error[-1] else "")
+                     + f"{np.exp(np.interp(np.log(here), error, effort)):.0f}"]
+        lines.append(line)
+    return studies.table(["problem", *(f"{held:g}: {title}" for held in HELD
+                                       for title in ("error, %", "iterations", "limits"))], lines)
+
+
 def parser():
     """Return the parser of the command line."""
     found = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -157,7 +214,8 @@ def main():
     usual = {name: measured(options, BASE, name) for name in options.problems}
     pooled = {name: [row for lines in LEVELS for row in measured(options, lines, name)] for name in options.problems}
     tables = {"estimate": local_table(usual), "estimate of all levels": local_table(pooled),
-              "missed": missed_table(usual), "sum of the estimate": global_table(options, options.problems)}
+              "missed": missed_table(usual), "sum of the estimate": global_table(options, options.problems),
+              "control": control_table(options, options.problems)}
     jobs = [read_job(folder_of(options, lines, name) / "results") for lines in VARIED for name in options.problems]
     for name, text in tables.items():
         print(f"{name}\n\n{text}", end="\n\n")
