@@ -80,8 +80,8 @@ program benchmark_increment_error
     real(wp) :: next = 0.0_wp, size = 0.0_wp, estimate = 0.0_wp
   end type controller_t
 
-  !> The digital filter H211b: b times the order of the estimate as the exponent's divisor, b, and
-  !> the bounds of the ratio of two sizes.
+  !> Digital filter H211b: divisor in the exponent of the estimates, which is b times their order,
+  !> 2; b; bounds of the ratio of two sizes.
   real(wp), parameter :: divisor = 8.0_wp, b = 4.0_wp, least_ratio = 0.2_wp, most_ratio = 2.0_wp
   !> First size over the trial increment; smallest size over the intended one that is judged.
   real(wp), parameter :: first_size = 0.25_wp, judged = 0.7_wp

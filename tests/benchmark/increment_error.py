@@ -6,9 +6,9 @@
     tests/benchmark/increment_error.py --build build/release --work build/increments
     tests/benchmark/increment_error.py ... --write       and put the tables into docs/reports/increments.md
 
-The runs, their limits and the errors of a run are those of increments.py, with the same folder of the runs; the error of
-an increment is the difference of the same increment in equal parts. An estimate follows an error where the correlation
-of their logarithms (Pearson) and that of their ranks (Spearman) are near 1; a table gives both as "Pearson, Spearman".
+The runs, their limits and the errors of a run are those of increments.py, with the same folder of the runs. The error
+of an increment is its difference from the same one in equal parts. A correlation is given as that of the logarithms
+(Pearson) and that of the ranks (Spearman).
 """
 import argparse
 import csv
@@ -16,9 +16,9 @@ from pathlib import Path
 
 import increments
 import numpy as np
-from envelope import Results, studies
+from envelope import Job, Results, make, studies
 from increments import BASE, REPORT, TRIALS, curve_error, folder_of, largest, outcome, reference_of
-from problems import merged
+from problems import BENDING, merged, of_file, without
 
 from dd3.errors import Problem, run
 from dd3.pages import put_table
@@ -33,9 +33,14 @@ VARIED = [*LEVELS, "rotation = 8", "rotation = 2", "depth = 0.02", "r_max = 2", 
 HELD = (0.1, 0.05, 0.025)  # estimates that a controller holds
 FREE = ("strain = 0.4", "rotation = 12", "depth = 0.1", "r_max = 4")  # limits beside it
 STRIDES = {"accuracy = fine": 4}  # of the increments of which the error is measured; 1 with other limits
+PENALTIES = ("1e2", "1e3", "1e4", "1e5")  # N/mm
+SETTINGS = {"standard": {"limits": BASE}, "fine": {"limits": "accuracy = fine"},
+            "reference": {"limits": increments.REFERENCE},
+            "standard, tolerance 1e-5": {"limits": BASE, "newton": "tolerance = 1e-5"},
+            "reference, tolerance 1e-5": {"limits": increments.REFERENCE, "newton": "tolerance = 1e-5"}}
+FALL = (16.0, 19.0)  # travels between which the force of mesh (a) falls, mm
 SETS = {"rms_sheet": "stress, sheet", "rms_quiet": "no change of contact", "rms_steady": "nor of yielding",
-        "p95_sheet": "95 %, sheet", "p95_quiet": "95 %, no change of contact", "displacement": "displacement",
-        "contact": "contact forces", "force": "force"}
+        "p95_sheet": "95 %, sheet", "displacement": "displacement", "contact": "contact forces", "force": "force"}
 SUMS = {"estimate, sheet": lambda rows: np.maximum(column(rows, "linear_rms_sheet"), 0),
         "estimate, no change of contact": lambda rows: np.maximum(column(rows, "linear_rms_quiet"), 0),
         "size squared": lambda rows: column(rows, "size")**2}
@@ -52,8 +57,8 @@ def rows_of(options, name, folder, parts=0, stride=1, held=0.0):
     path = folder / (f"increments_held_{held:g}.csv" if held else f"increments_{parts}.csv")
     if not path.is_file():
         settings = [f"{key}={value}" for key, value in TRIALS[name].settings.items()]
-        done = launch([options.build / "tests" / "benchmark" / "benchmark_increment_error", *map(str, (parts, stride, held)),
-                       folder / "deck.dat", *settings])
+        done = launch([options.build / "tests" / "benchmark" / "benchmark_increment_error",
+                       *map(str, (parts, stride, held)), folder / "deck.dat", *settings])
         if done.code:
             raise Problem(f"benchmark_increment_error, {folder}: exit code {done.code}\n{done.errors}")
         path.write_text(done.output, encoding="utf-8")
@@ -122,31 +127,61 @@ def shown(pair):
 # ---- tables ----------------------------------------------------------------------------------------------------------
 
 def local_table(found):
-    """Return the table of correlations of estimate and error of increments."""
-    return studies.table(["problem", "increments", *SETS.values()], [
-        [name, str(np.count_nonzero(column(rows, "error_rms_sheet") > 0)),
-         *(shown(correlation(column(rows, f"linear_{key}"), column(rows, f"error_{key}"))) for key in SETS)]
-        for name, rows in found.items()])
+    """Return the table of correlations of estimate and error of increments, and of rotation and error of the stress."""
+    lines = []
+    for name, rows in found.items():
+        rows = with_error(rows)
+        pairs = [(f"linear_{key}", f"error_{key}") for key in SETS] + [("rotation", "error_rms_sheet")]
+        lines.append([name, str(len(rows)),
+                      *(shown(correlation(*(column(rows, key) for key in pair))) for pair in pairs)])
+    return studies.table(["problem", "increments", *SETS.values(), "rotation"], lines)
 
 
-def missed_table(found):
+def with_error(rows):
+    """Return the rows of the increments of which the error has been measured."""
+    return [row for row in rows if float(row["error_rms_sheet"]) > 0]
+
+
+def missed_table(options, found):
     """Return the table of what the estimate misses."""
     lines = []
     for name, rows in found.items():
-        rows = [row for row in rows if float(row["error_rms_sheet"]) > 0]
+        rows = with_error(rows)
         sheet, error = column(rows, "linear_rms_sheet"), column(rows, "error_rms_sheet")
         low, middle, high = np.percentile(sheet/error, (10, 50, 90))
         parts = [1 - np.sum(column(rows, f"{key}_share")*np.maximum(column(rows, f"error_rms_{key}"), 0)**2)
                  / np.sum(error**2) for key in ("quiet", "steady")]
-        updated = column(rows, "updated_rms_sheet")
-        lines.append([name, f"{100*np.median(error):.2g}", f"{100*np.median(column(rows, 'error_force')):.2g}",
-                      f"{middle:.1f} ({low:.1f} to {high:.1f})", f"{np.median(column(rows, 'places')):.2f}",
-                      *(f"{100*part:.0f}" for part in parts),
-                      *(shown(correlation(column(rows, key), error)) for key in ("rotation", "size")),
+        updated, force = column(rows, "updated_rms_sheet"), column(rows, "tool_force")
+        errors = outcome(options, BASE, name).errors
+        lines.append([name, f"{100*np.median(error):.2g}", f"{middle:.1f} ({low:.1f} to {high:.1f})",
+                      f"{np.median(updated[updated > 0]/error[updated > 0]):.0f}",
+                      f"{np.median(column(rows, 'places')):.2f}", *(f"{100*part:.0f}" for part in parts),
                       shown(correlation(sheet, column(rows, "error_force"))),
-                      f"{np.median(updated[updated > 0]/error[updated > 0]):.0f}"])
-    return studies.table(["problem", "error of stress, %", "of force, %", "estimate/error", "rank over points",
-                          "status changes, %", "or yielding, %", "rotation", "size", "force", "integrated/error"], lines)
+                      f"{100*np.sum(column(rows, 'error_force')*force)/np.mean(force):.2g}",
+                      f"{errors[0] or errors[1]:.2f}"])
+    return studies.table(["problem", "error, %", "estimate/error", "integrated/error", "over points", "status, %",
+                          "or yielding, %", "force", "sum, %", "run, %"], lines)
+
+
+def penalty_table(options):
+    """Return the table of forces of mesh (a) at 17 mm with the mixed formulation, by limits and penalty."""
+    lines, jobs = [], []
+    for title, blocks in SETTINGS.items():
+        curves = []
+        for penalty in PENALTIES:
+            job = Job(lambda _: without(of_file(BENDING / "bending.dat")(None), "LIMITS", "NEWTON", "SOLVER"), 0.78, {},
+                      {"skew": 0, "p": penalty})
+            folder = folder_of(options, f"penalty {penalty} {title}", "bending_test_a")
+            make(options, job, folder, blocks)
+            travels, curve = Results(folder / "results").resampled("punch_fz", *FALL)
+            curves.append(curve)
+            jobs.append(read_job(folder / "results"))
+        spread = 100*np.ptp(curves, axis=0)/np.mean(curves, axis=0)
+        worst, place = np.argmax(spread), np.argmin(np.abs(travels - 17.0))
+        lines.append([title, *(f"{curve[place]:.0f}" for curve in curves), f"{spread[place]:.2f}",
+                      f"{spread[worst]:.2f} at {travels[worst]:.1f} mm"])
+    return studies.table(["limits", *(f"p = {penalty}, N" for penalty in PENALTIES), "spread at 17 mm, %",
+                          "largest, %"], lines), jobs
 
 
 def global_table(options, names):
@@ -214,9 +249,11 @@ def main():
     usual = {name: measured(options, BASE, name) for name in options.problems}
     pooled = {name: [row for lines in LEVELS for row in measured(options, lines, name)] for name in options.problems}
     tables = {"estimate": local_table(usual), "estimate of all levels": local_table(pooled),
-              "missed": missed_table(usual), "sum of the estimate": global_table(options, options.problems),
+              "missed": missed_table(options, usual), "sum of the estimate": global_table(options, options.problems),
               "control": control_table(options, options.problems)}
     jobs = [read_job(folder_of(options, lines, name) / "results") for lines in VARIED for name in options.problems]
+    tables["penalties"], more = penalty_table(options)
+    jobs += more
     for name, text in tables.items():
         print(f"{name}\n\n{text}", end="\n\n")
         if options.write:
