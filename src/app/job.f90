@@ -188,9 +188,9 @@ contains
     if (allocated(start%sheet_report)) &
         write (output_unit, '(a)', advance="no") start%sheet_report
     if (size(case%point) == 0) then
-      write (output_unit, '(a)', advance="no") size_report(job)//mesh%report()// &
+      write (output_unit, '(a)', advance="no") size_report(job, mesh%at_end)//mesh%report()// &
           time_report(model, start%state, mesh%mean_number())
-      call messages%add_new("W014", memory_warning(job))
+      call messages%add_new("W014", memory_warning(job, mesh%at_end))
     end if
     call unit_warnings(case, model, warnings)
     do i = 1, warnings%count

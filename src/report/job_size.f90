@@ -31,6 +31,8 @@ module dd3_report_job_size
     !> Memory of the factors and of the whole program in the run, bytes; the factors are 0 if only
     !> the factorisation tells. Without a matrix the total is a lower bound.
     real(wp) :: factors = 0.0_wp, total = 0.0_wp
+    !> Part of the total that does not grow with the number of elements, bytes.
+    real(wp) :: fixed = 0.0_wp
   end type job_size_t
 
 contains
@@ -54,8 +56,8 @@ contains
 
     self%elements = model%n_element
     self%unknowns = 3*model%n_node
-    without_solver = resident_memory() + libraries + states_bytes(model, state) &
-        + element_bytes(model)
+    self%fixed = resident_memory() + libraries
+    without_solver = self%fixed + states_bytes(model, state) + element_bytes(model)
     self%total = without_solver + matrix_bytes(model, least_blocks*size(model%part%element))
     if (is_too_large(self)) return
     call new_stiffness_pattern(matrix, model)
@@ -114,9 +116,23 @@ contains
     points = real(model%element%n_point, wp)*real(size(model%part%element), wp)
   end function points
 
-  !> Return the size as text for the user.
-  function size_report(self) result(text)
+  !> Return the memory of a run whose mesh is refined, bytes: while it is, the sheet before and after
+  !> are held with their states. Runs of 600 to 5,700 elements took 0.7 to 0.95 of it.
+  pure real(wp) function refined_bytes(self, elements) result(bytes)
     type(job_size_t), intent(in) :: self
+    !> Largest number of elements.
+    integer, intent(in) :: elements
+
+    bytes = self%total
+    if (elements > self%elements) bytes = self%fixed &
+        + 2.0_wp*(self%total - self%fixed)*real(elements, wp)/real(self%elements, wp)
+  end function refined_bytes
+
+  !> Return the size as text for the user.
+  function size_report(self, most_elements) result(text)
+    type(job_size_t), intent(in) :: self
+    !> Number of elements of a mesh that is refined, at the end of the forming; 0 for another one.
+    integer, intent(in), optional :: most_elements
     character(len=:), allocatable :: text
 
     text = "size: "//to_text(self%elements)//" elements, "//to_text(self%unknowns)//" unknowns"
@@ -138,17 +154,27 @@ contains
     else
       text = text//" without factors"
     end if
+    if (present(most_elements)) then
+      if (most_elements > self%elements) text = text//"; at the end of the forming about "// &
+          to_text(nint(refined_bytes(self, most_elements)/megabyte))//" MB"
+    end if
     text = text//newline
   end function size_report
 
   !> Return a warning if the job needs more memory than the machine has left; empty otherwise.
-  function memory_warning(self) result(text)
+  function memory_warning(self, most_elements) result(text)
     type(job_size_t), intent(in) :: self
+    !> As above.
+    integer, intent(in), optional :: most_elements
     character(len=:), allocatable :: text
 
+    type(job_size_t) :: largest
+
     text = ""
-    if (.not. is_too_large(self)) return
-    text = "the job needs about "//to_text(nint(self%total/megabyte))//" MB of memory, "// &
+    largest = self
+    if (present(most_elements)) largest%total = refined_bytes(self, most_elements)
+    if (.not. is_too_large(largest)) return
+    text = "the job needs about "//to_text(nint(largest%total/megabyte))//" MB of memory, "// &
         "the machine has "//to_text(nint(available_memory()/megabyte))//" MB left: it would be "// &
         "slow or be ended by the system; a mesh with fewer elements needs less"
   end function memory_warning
