@@ -23,10 +23,9 @@ module dd3_model_sheet_turn
 
   !> Sliding c over the travel of the tools.
   real(wp), parameter :: sliding = 0.5_wp
-  !> Places of an element from which tools are looked for: a grid with so many parts of an edge, and
-  !> the largest distance of a point of the element from the nearest of them, in diagonals.
+  !> Places of an element from which tools are looked for: a grid with so many parts of an edge, of
+  !> which one is within half a diagonal of a part from each point of the element.
   integer, parameter :: n_part = 4
-  real(wp), parameter :: beside = 0.5_wp/real(n_part, wp)
   !> Ratio of the edges up to which both directions have one length.
   real(wp), parameter :: square = 1.1_wp
 
@@ -154,7 +153,7 @@ contains
     ! Most elements have nothing near, and no more than a neighbour: one search from the centre.
     facing = facing_t(-face_normal(corner), cos(rotation))
     if (turn_over(field, centre, distance + 0.5_wp*diagonal, maxval(length), facing) <= largest) return
-    reach = distance + beside*diagonal
+    reach = distance + 0.5_wp*diagonal/real(n_part, wp)
     do j = 0, n_part
       do i = 0, n_part
         associate (place => matmul(corner, shape_at(real([i, j], wp)/real(n_part, wp))))

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Measure what the constants of the corrector and the step control are worth: each at half and at twice its value.
+"""Measure what the constants of the corrector, the step control and the adaptive refinement are worth: each at half and
+at twice its value.
 
     tests/benchmark/constants.py --work build/constants
     tests/benchmark/constants.py --work build/constants --only largest_ratio tool_weight
-    tests/benchmark/constants.py --work build/constants --write     and put the table into docs/reports/constants.md
+    tests/benchmark/constants.py --work build/constants --write     and put the tables into docs/reports/constants.md
 
 A copy of the sources, in which the constants are variables, is built once; each variant is a copy of that program with
 another number in its data. A run is kept in the folder of its variant, and not repeated.
@@ -29,10 +30,13 @@ FILES = ("process/newton", "process/norm", "process/equilibrium", "process/tool_
          "process/open_edges", "process/phase_start", "model/contact_layer", "model/rigid_supports", "model/tolerances",
          "model/terms/drawbead", "model/terms/floating", "model/terms/viscous", "settings/accuracy", "setup/phases",
          "contact/operator", "system/compliant_contact", "system/mixed_contact")
+REFINEMENT = ("run/adaptivity", "model/sheet_turn", "model/sheet_compression")
+VALUES = re.compile(r"(\w+) = ([-\d.e]+)(?:_wp)?(?:, |$)")
 DECLARATION = re.compile(r"^  (real\(wp\)|integer), parameter :: ([^&\n]*)\n", re.MULTILINE)
 FIXED = {"unknown", "n_kept", "chunk", "status_gap", "status_stick", "status_slip"}  # codes, sizes of arrays
 DRAW_BENDING = ROOT / "input_files" / "draw_bending" / "draw_bending.dat"
 UNLOAD = "*PHASE springback\n  unload = on\n"
+BENT = ROOT / "tests" / "parallel" / "bent.dat"
 TIP = "*SET tip\n  near = 175 0 0\n*HISTORY tip\n  set = tip\n  quantities = displacement\n"
 FACTORS = {"half": 0.5, "twice": 2.0}
 
@@ -71,9 +75,9 @@ def make_variable(path, module):
     def replace(match):
         nonlocal meaning
         kind, body = match.groups()
-        values = re.findall(r"(\w+) = ([-\d.e]+)(?:_wp)?", body)
+        values = VALUES.findall(body)
         meaning = meaning_before(text, match.start()) or meaning
-        if {name for name, _ in values} & FIXED:
+        if VALUES.sub("", body) or {name for name, _ in values} & FIXED:
             return match.group()
         found.extend(Constant(module, name, kind == "integer", float(value), meaning) for name, value in values)
         return f"  {kind}, public :: {body}\n"
@@ -97,7 +101,7 @@ def build(work):
     for name in listed.splitlines():
         content = (ROOT / name).read_bytes()
         part = name.removeprefix("src/").removesuffix(".f90")
-        if part in FILES:
+        if part in FILES + REFINEMENT:
             text, found = make_variable(ROOT / name, "dd3_" + part.replace("/", "_"))
             content, constants = text.encode(), constants + found
         target = source / name
@@ -130,7 +134,7 @@ def variant(program, constant, value, target):
 
 
 def cases():
-    """Return deck, parameters and observed columns of each case."""
+    """Return deck, parameters and observed columns of each case of the corrector and the step control."""
     bending = DRAW_BENDING.read_text(encoding="utf-8").replace('patches = "', f'patches = "{DRAW_BENDING.parent}/')
     released = bending.replace(UNLOAD, UNLOAD + TIP)
     mixed = bending.replace(UNLOAD, TIP).replace("*CONTACT\n", "*CONTACT\n  formulation = mixed\n")
@@ -143,17 +147,27 @@ def cases():
             "exact": (exact, strip, ("punch_fz",)), "cup": (square, CUP, ("punch_fz",))}
 
 
+def refined_cases():
+    """Return deck, parameters and observed columns of each case of the adaptive refinement."""
+    square, _, columns = cases()["cup"]
+    bent = BENT.read_text(encoding="utf-8")
+    return {"cup": (square, REFINED_CUP, columns), "bent": (bent, {}, ("root_rx", "root_my"))}
+
+
 CUP = {"divisions": "10 10 1", "levels": "0", "depth": "5"}
+REFINED_CUP = {"divisions": "8 8 1", "levels": "2", "depth": "20"}
 
 
 @dataclass
 class Found:
-    """Effort and result of a run."""
+    """Effort, mesh and result of a run."""
 
     increments: int
     cut_backs: int
     iterations: int
     values: list
+    elements: int
+    refinements: int
 
 
 def measure(program, folder, text, parameters, columns):
@@ -173,18 +187,49 @@ def measure(program, folder, text, parameters, columns):
     if effort is None or "reached the end" not in log.read_text(encoding="utf-8"):
         return None
     history = read_table(folder / "out" / "history.csv")
-    return Found(*(int(part) for part in effort.groups()), [number(history[-1], name, folder) for name in columns])
+    return Found(*(int(part) for part in effort.groups()), [number(history[-1], name, folder) for name in columns],
+                 int(number(history[-1], "elements", folder)), len(read_job(folder / "out")["refinements"]))
 
 
-def summary(base, found):
-    """Return iterations and cut-backs against those of the constant as it is, and the largest change of a result."""
+def summary(base, found, counts=("iterations", "cut_backs")):
+    """Return counts over all runs against those of the constant as it is, and the largest change of a result."""
     stopped = [name for name, one in found.items() if one is None]
     if stopped:
         return "stops: " + ", ".join(stopped)
-    more = sum(one.iterations for one in found.values()) - sum(one.iterations for one in base.values())
-    cut = sum(one.cut_backs for one in found.values()) - sum(one.cut_backs for one in base.values())
+    more = [sum(getattr(one, count) - getattr(base[name], count) for name, one in found.items()) for count in counts]
     change = max(abs(new/old - 1) for name, one in found.items() for new, old in zip(one.values, base[name].values))
-    return "none" if not (more or cut or change) else f"{more:+d}, {cut:+d}, {100*change:.2g} %"
+    return ", ".join([*(f"{one:+d}" for one in more), f"{100*change:.2g} %"]) if any(more) or change else "none"
+
+
+def refined_summary(base, found):
+    """Return such changes with those of the mesh."""
+    return summary(base, found, ("elements", "refinements", "iterations", "cut_backs"))
+
+
+def measured_constants(work, program, constants, runs, summarise):
+    """Return a row of the table for each constant, given the runs of a group and what tells their changes."""
+
+    def all_of(folder, executable):
+        return {name: measure(executable, folder / name, *case) for name, case in runs.items()}
+
+    base, rows = all_of(work / "base", program), []
+    print(base, flush=True)
+    if None in base.values():
+        raise Problem("a case stops with the constants as they are")
+    for constant in constants:
+        cells = []
+        for label, factor in FACTORS.items():
+            folder = work / f"{constant.module}.{constant.name}.{label}"
+            folder.mkdir(parents=True, exist_ok=True)
+            executable = folder / "dd3imp"
+            variant(program, constant, constant.varied(factor), executable)
+            cells.append(summarise(base, all_of(folder, executable)))
+            executable.unlink()
+        place = constant.module.removeprefix("dd3_").replace("model_terms_", "")
+        meaning = constant.meaning.replace("|", "\\|")
+        rows.append([f"`{place}` `{constant.name}`", f"{constant.value:g}", meaning, *cells])
+        print(*rows[-1], sep=" | ", flush=True)
+    return rows
 
 
 def main():
@@ -196,40 +241,25 @@ def main():
     arguments = parser.parse_args()
     work = arguments.work.resolve()
     program, constants = build(work)
-    runs = cases()
-
-    def all_of(folder, executable):
-        return {name: measure(executable, folder / name, *case) for name, case in runs.items()}
-
     if not (work / "commit").exists():  # of the sources that are copied, which are not under version control there
         head, changes = (subprocess.run(["git", "-C", str(ROOT), *command], capture_output=True, text=True,
                                         check=True).stdout for command in (["rev-parse", "HEAD"],
                                                                            ["status", "--porcelain", "src"]))
         (work / "commit").write_text(head[:7] + ("+" if changes else ""), encoding="utf-8")
-    base = all_of(work / "base", program)
-    print({name: one for name, one in base.items()}, flush=True)
-    if None in base.values():
-        raise Problem("a case stops with the constants as they are")
-    rows = []
-    for constant in constants:
-        if arguments.only and constant.name not in arguments.only:
-            continue
-        cells = []
-        for label, factor in FACTORS.items():
-            folder = work / f"{constant.module}.{constant.name}.{label}"
-            folder.mkdir(parents=True, exist_ok=True)
-            executable = folder / "dd3imp"
-            variant(program, constant, constant.varied(factor), executable)
-            cells.append(summary(base, all_of(folder, executable)))
-            executable.unlink()
-        place = constant.module.removeprefix("dd3_").replace("model_terms_", "")
-        rows.append([f"`{place}` `{constant.name}`", f"{constant.value:g}", constant.meaning.replace("|", "\\|"), *cells])
-        print(*rows[-1], sep=" | ", flush=True)
-    if arguments.write:
-        jobs = [read_job(work / "base" / name / "out") for name in runs]
-        for job in jobs:
-            job["program"]["commit"] = (work / "commit").read_text(encoding="utf-8").strip()
-        put_table(REPORT, "constants", table(["constant", "value", "meaning", "half", "twice"], rows), jobs)
+    if arguments.only:
+        constants = [constant for constant in constants if constant.name in arguments.only]
+    modules = {"dd3_" + part.replace("/", "_") for part in REFINEMENT}
+    groups = {"refinement": (work / "refinement", refined_cases(), refined_summary,
+                             [constant for constant in constants if constant.module in modules]),
+              "constants": (work, cases(), summary,
+                            [constant for constant in constants if constant.module not in modules])}
+    for name, (folder, runs, summarise, group) in groups.items():
+        rows = measured_constants(folder, program, group, runs, summarise)
+        if arguments.write:
+            jobs = [read_job(folder / "base" / run / "out") for run in runs]
+            for job in jobs:
+                job["program"]["commit"] = (work / "commit").read_text(encoding="utf-8").strip()
+            put_table(REPORT, name, table(["constant", "value", "meaning", *FACTORS], rows), jobs)
 
 
 if __name__ == "__main__":

@@ -88,7 +88,8 @@ PAGES = {
     "bending_test": Page(6, BENDING, (
         "utils/dev/bending_tables.py --program {program} --work {work} --reuse --write docs/reports/bending_test.md",)),
     "capstan": Page(1, f"{MECHANICS} tests/cases/capstan", (f"tests/capstan/run.py{RUN}",)),
-    "constants": Page(20, f"{MECHANICS} input_files/draw_bending input_files/square_cup tests/benchmark/constants.py",
+    "constants": Page(40, f"{MECHANICS} src/run/adaptivity.f90 input_files/draw_bending input_files/square_cup "
+                          "tests/parallel/bent.dat tests/benchmark/constants.py",
                       ("tests/benchmark/constants.py --work {work} --write",)),
     "contact": Page(8, MECHANICS, (labelled("compliant", contact=COMPLIANT) + " --write",
                                    envelope("--layers --write"))),
