@@ -5,6 +5,7 @@ at twice its value.
 
     tests/benchmark/constants.py --work build/constants
     tests/benchmark/constants.py --work build/constants --only largest_ratio tool_weight
+    tests/benchmark/constants.py --work build/constants --tables refinement
     tests/benchmark/constants.py --work build/constants --write     and put the tables into docs/reports/constants.md
 
 A copy of the sources, in which the constants are variables, is built once; each variant is a copy of that program with
@@ -15,6 +16,7 @@ import re
 import struct
 import subprocess
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 
 from dd3.errors import Problem, check
@@ -25,12 +27,14 @@ from dd3.tables import number, read_table
 
 ROOT = Path(__file__).resolve().parents[2]
 REPORT = ROOT / "docs" / "reports" / "constants.md"
-FILES = ("process/newton", "process/norm", "process/equilibrium", "process/tool_balance", "process/limiters",
-         "process/step_control", "process/predictor", "process/phase_end", "process/elimination",
-         "process/open_edges", "process/phase_start", "model/contact_layer", "model/rigid_supports", "model/tolerances",
-         "model/terms/drawbead", "model/terms/floating", "model/terms/viscous", "settings/accuracy", "setup/phases",
-         "contact/operator", "system/compliant_contact", "system/mixed_contact")
-REFINEMENT = ("run/adaptivity", "model/sheet_turn", "model/sheet_compression")
+# Sources of the constants, by the name of the table.
+GROUPS = {"corrector": ("process/newton", "process/norm", "process/equilibrium", "process/tool_balance",
+                        "process/limiters", "process/step_control", "process/predictor", "process/phase_end",
+                        "process/elimination", "process/open_edges", "process/phase_start"),
+          "contact": ("model/contact_layer", "model/rigid_supports", "model/tolerances", "model/terms/drawbead",
+                      "model/terms/floating", "model/terms/viscous", "settings/accuracy", "setup/phases",
+                      "contact/operator", "system/compliant_contact", "system/mixed_contact"),
+          "refinement": ("run/adaptivity", "model/sheet_turn", "model/sheet_compression")}
 VALUES = re.compile(r"(\w+) = ([-\d.e]+)(?:_wp)?(?:, |$)")
 DECLARATION = re.compile(r"^  (real\(wp\)|integer), parameter :: ([^&\n]*)\n", re.MULTILINE)
 FIXED = {"unknown", "n_kept", "chunk", "status_gap", "status_stick", "status_slip"}  # codes, sizes of arrays
@@ -101,7 +105,7 @@ def build(work):
     for name in listed.splitlines():
         content = (ROOT / name).read_bytes()
         part = name.removeprefix("src/").removesuffix(".f90")
-        if part in FILES + REFINEMENT:
+        if part in chain(*GROUPS.values()):
             text, found = make_variable(ROOT / name, "dd3_" + part.replace("/", "_"))
             content, constants = text.encode(), constants + found
         target = source / name
@@ -134,7 +138,7 @@ def variant(program, constant, value, target):
 
 
 def cases():
-    """Return deck, parameters and observed columns of each case of the corrector and the step control."""
+    """Return deck, parameters and observed columns of each case on a uniform mesh."""
     bending = DRAW_BENDING.read_text(encoding="utf-8").replace('patches = "', f'patches = "{DRAW_BENDING.parent}/')
     released = bending.replace(UNLOAD, UNLOAD + TIP)
     mixed = bending.replace(UNLOAD, TIP).replace("*CONTACT\n", "*CONTACT\n  formulation = mixed\n")
@@ -148,7 +152,7 @@ def cases():
 
 
 def refined_cases():
-    """Return deck, parameters and observed columns of each case of the adaptive refinement."""
+    """Return deck, parameters and observed columns of each case on a refined mesh."""
     square, _, columns = cases()["cup"]
     bent = BENT.read_text(encoding="utf-8")
     return {"cup": (square, REFINED_CUP, columns), "bent": (bent, {}, ("root_rx", "root_my"))}
@@ -237,6 +241,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--work", type=Path, required=True)
     parser.add_argument("--only", nargs="*", help="names of constants")
+    parser.add_argument("--tables", nargs="*", choices=GROUPS, default=list(GROUPS), help="these tables")
     parser.add_argument("--write", action="store_true")
     arguments = parser.parse_args()
     work = arguments.work.resolve()
@@ -248,12 +253,11 @@ def main():
         (work / "commit").write_text(head[:7] + ("+" if changes else ""), encoding="utf-8")
     if arguments.only:
         constants = [constant for constant in constants if constant.name in arguments.only]
-    modules = {"dd3_" + part.replace("/", "_") for part in REFINEMENT}
-    groups = {"refinement": (work / "refinement", refined_cases(), refined_summary,
-                             [constant for constant in constants if constant.module in modules]),
-              "constants": (work, cases(), summary,
-                            [constant for constant in constants if constant.module not in modules])}
-    for name, (folder, runs, summarise, group) in groups.items():
+    for name in arguments.tables:
+        modules = ["dd3_" + part.replace("/", "_") for part in GROUPS[name]]
+        group = [constant for constant in constants if constant.module in modules]
+        folder, runs, summarise = (work / "refinement", refined_cases(), refined_summary) if name == "refinement" else (
+            work, cases(), summary)
         rows = measured_constants(folder, program, group, runs, summarise)
         if arguments.write:
             jobs = [read_job(folder / "base" / run / "out") for run in runs]
