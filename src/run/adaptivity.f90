@@ -38,14 +38,14 @@ module dd3_run_adaptivity
   private
   public :: adaptivity_t, ahead, most_returns, new_adaptivity
 
-  !> Travel of the tools within which a radius makes an element be divided, and that within which all
-  !> are divided then, over the length of the element; rotation of the sheet meanwhile, over the
-  !> angle.
+  !> Travel of the tools within which a radius makes an element be divided, and that within which
+  !> all are divided then, over the length of the element.
   real(wp), parameter :: near = 0.2_wp, ahead = 0.7_wp
+  !> Rotation of the sheet in the one travel and in the other, over the angle.
   real(wp), parameter :: near_rotation = 1.0_wp, rotation_ahead = 2.0_wp
-  !> Turns over the angle of the input: that at which the mesh is changed, while all elements above
-  !> the angle are divided then, as they come above it one after another when they are stretched
-  !> and bent; that of the sheet at which an increment is made again.
+  !> Turn over the angle of the input at which the mesh is changed, and that of the sheet at which
+  !> an increment is made again. All elements above the angle are divided then, as they come above
+  !> it one after another when they are stretched and bent.
   real(wp), parameter :: over = 1.15_wp, too_far = 1.3_wp
   !> Length of an element above which it cannot show the wrinkles of a compressed sheet, in
   !> thicknesses.
