@@ -35,7 +35,8 @@ def main():
         subprocess.run([Path(sys.executable).parent / "dd3", "tool", bench.work / f"{name}.step",
                         bench.work / f"{name}.bez", "--toward", "0", "0", side, "--tolerance", "0.01"],
                        check=True, capture_output=True)
-    run = bench.run("hood", ROOT / "input_files" / "hood" / "hood.dat", {"tools": bench.work, "levels": 0})
+    run = bench.run("hood", ROOT / "input_files" / "hood" / "hood.dat",
+                    {"tools": bench.work, "levels": 0, "divisions": "25 20 1"})
     grid = dd3.open(run.folder).fields
     points = np.asarray(grid[int(grid.step_at("draw"))].points)
     middle = points[np.linalg.norm(points[:, :2], axis=1) < 1e-3]
