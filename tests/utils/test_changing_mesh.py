@@ -160,6 +160,20 @@ def test_strains_and_springback(run):
     assert found.distance().max() < 1e-9 and twist(sheet, found)[1] == pytest.approx(0, abs=1e-9)
 
 
+def test_fit_by_area(run):
+    """Check that nodes count by their areas, whatever the mesh, and that a fit takes them."""
+    sheet, (places, _) = Sheet(run), meshes()
+    centre = (places[0].min(axis=0) + places[0].max(axis=0)) / 2
+    area = 2 * np.prod(np.ptp(places[0][:, :2], axis=0))
+    for step in (0, FINE):
+        areas, start = sheet.areas(step), sheet.start(step)
+        assert areas.sum() == pytest.approx(area) and np.allclose(areas @ start / area, centre)
+    assert not np.allclose(start.mean(axis=0), centre)
+    other = start.copy()
+    other[0] += 5
+    assert np.allclose(best_fit(other, start, ("x",), np.arange(len(start)))[1:], start[1:])
+
+
 def test_facets(run):
     """Check the facets of the lower face for surfaces: closed, and continued only beyond the rim."""
     sheet = Sheet(run)

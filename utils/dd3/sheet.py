@@ -67,6 +67,16 @@ class Sheet(Fields):
         quads = np.array([face for face in corners[:, mine] if tuple(sorted(face)) not in inner])
         return quads if upper else quads[:, ::-1]
 
+    def areas(self, step: int = -1) -> np.ndarray:
+        """Return the initial areas of the nodes of a step, quarters of their faces on both sides of the sheet, mm2."""
+        start, areas = self.start(step), np.zeros(self.size_of("Points", step))
+        for upper in (True, False):
+            faces = self.faces(upper, step)
+            across = start[faces[:, 2:]] - start[faces[:, :2]]
+            size = np.linalg.norm(np.cross(across[:, 0], across[:, 1]), axis=1) / 8
+            np.add.at(areas, faces, size[:, None])
+        return areas
+
     def rings(self, upper: bool = True, step: int = -1) -> list[list[int]]:
         """Return the nodes around the faces of the upper or the lower face of the sheet."""
         return rings(self.faces(upper, step), self.bound(step))

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dd3.section import in_plane
-from dd3.sheet import AXES, Line, Sheet
+from dd3.sheet import AXES, Line, Sheet, length
 
 ENDS = 0.1, 0.9  # places along the sheet at which the rotations are compared, over its length
 
@@ -36,14 +36,20 @@ def images(points: np.ndarray, mirror: Sequence[str]) -> list[np.ndarray]:
     return parts
 
 
-def best_fit(points: np.ndarray, target: np.ndarray, mirror: Sequence[str] = ()) -> np.ndarray:
+def best_fit(points: np.ndarray, target: np.ndarray, mirror: Sequence[str] = (), weights: np.ndarray | None = None
+             ) -> np.ndarray:
     """Return points moved as a rigid body, with their mirror images, to the least squares of the distances.
 
+    weights: those of the squares, such as the areas of nodes, without which the fit depends on the mesh; equal by
+    default.
     Source: Kabsch, Acta Cryst. A 32 (1976) 922-923.
     """
     whole, goal = np.concatenate(images(points, mirror)), np.concatenate(images(target, mirror))
-    centre, middle = whole.mean(axis=0), goal.mean(axis=0)
-    left, _, right = np.linalg.svd((whole - centre).T @ (goal - middle))
+    part = np.ones(len(points)) if weights is None else weights
+    part = np.tile(part / part.sum(), len(whole) // len(points))
+    part /= part.sum()
+    centre, middle = part @ whole, part @ goal
+    left, _, right = np.linalg.svd((part[:, None] * (whole - centre)).T @ (goal - middle))
     turn = np.diag([1.0, 1.0, np.linalg.det(left @ right)])
     moved: np.ndarray = (points - centre) @ left @ turn @ right + middle
     return moved
@@ -68,14 +74,16 @@ def find(sheet: Sheet, phases: Sequence[dict], mirror: Sequence[str] = ()) -> Sp
         return None
     step = int(drawn[-1])
     points, free = sheet.points(step), sheet.points(sheet.last)[sheet.nodes_in(step, sheet.last)]
-    return Springback(points, best_fit(free, points, mirror), step)
+    return Springback(points, best_fit(free, points, mirror, sheet.areas(step)), step)
 
 
 def rotation(line: Line, found: Springback, normal: np.ndarray) -> float:
-    """Return the mean rotation of a section in its plane, counter-clockwise, degrees."""
+    """Return the mean rotation of a section in its plane along its length, counter-clockwise, degrees."""
     drawn, free = (in_plane(line.at(points), normal) for points in (found.drawn, found.free))
-    a, b = drawn - drawn.mean(axis=0), free - free.mean(axis=0)
-    return float(np.degrees(np.arctan2((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum(), (a * b).sum())))
+    parts = np.diff(length(drawn))
+    weights = np.append(parts, 0.0) + np.insert(parts, 0, 0.0)
+    a, b = (points - np.average(points, axis=0, weights=weights) for points in (drawn, free))
+    return float(np.degrees(np.arctan2(weights @ (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]), weights @ (a * b).sum(axis=1))))
 
 
 def opening(line: Line, found: Springback, normal: np.ndarray) -> tuple[float, float]:
