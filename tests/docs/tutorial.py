@@ -10,6 +10,7 @@ Words are the same; a number differs by two of its last digit at most, which oth
 """
 import pathlib
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -59,7 +60,7 @@ def main():
     folder = pathlib.Path(sys.executable).parent
     failed = 0
     for command, texts in commands():
-        words = command.split()
+        words = shlex.split(command)
         words[0] = str(folder / "dd3") if words[0] == "dd3" else words[0]
         if words[0].endswith(".py"):
             words.insert(0, sys.executable)
