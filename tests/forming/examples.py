@@ -47,7 +47,7 @@ class Example:
 
 EXAMPLES = {
     "square cup": Example("square_cup/square_cup", "30 30 1", "68 68 1"),
-    "square cup, flanged": Example("square_cup/flanged", "25 25 1", "76 76 1"),
+    "square cup, flanged": Example("square_cup/flanged", "25 25 1", "68 68 1"),
     "square cup, aluminium": Example("square_cup/aluminium", "30 30 1", "68 68 1"),
     "round cup": Example("round_cup/round_cup", "6 12 1", "12 24 1"),
     "round cup, AA6016": Example("round_cup_aa6016/round_cup_aa6016", "8 16 1", "32 64 1"),
