@@ -172,7 +172,7 @@ contains
     end do
   end subroutine probe_divided_face
 
-  !> Whether no patch of a tool is within the size of a face.
+  !> Whether the tool is farther from a face than twice its diagonal.
   pure logical function is_far(model, state, tool, corner)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -186,8 +186,8 @@ contains
     do i = 1, 4
       x(:, i) = placement%to_tool(state%x(:, corner(i)))
     end do
-    associate (surface => model%tool(tool)%surface, size => norm2(x(:, 3) - x(:, 1)))
-      reach = max(wrong_side_depth*model%thickness_at(corner(1)), 2.0_wp*size)
+    associate (surface => model%tool(tool)%surface, diagonal => norm2(x(:, 3) - x(:, 1)))
+      reach = max(wrong_side_depth*model%thickness_at(corner(1)), 2.0_wp*diagonal)
       is_far = any(minval(x, dim=2) - reach > surface%upper .or. &
           maxval(x, dim=2) + reach < surface%lower)
     end associate

@@ -108,7 +108,7 @@ contains
     type(adaptive_spec_t), intent(in) :: adaptive
     character(len=:), allocatable :: text
 
-    real(wp) :: edge(3, 4), length, expected
+    real(wp) :: edge(3, 4), length, part, expected
     integer :: level
 
     text = ""
@@ -117,9 +117,9 @@ contains
         face => model%face%corner(:, state%observed%deepest_face(tool)))
       edge = state%x(:, face) - state%x(:, cshift(face, 1))
       length = maxval(norm2(edge, dim=1))
+      part = length/real(parts_of_edge(model), wp)
       if (depth < slight_depth) return
-      if (depth < notable_depth .and. state%observed%largest_depth(tool) < notable_slope*length) &
-          return
+      if (depth < notable_depth .and. state%observed%largest_depth(tool) < notable_slope*part) return
       text = "tool '"//model%tool(tool)%name//"' entered the sheet between its nodes by up to "// &
           to_text(state%observed%largest_depth(tool), 3)//" mm ("//to_text(depth, 2)// &
           " thicknesses), at the face of element "// &
@@ -131,8 +131,8 @@ contains
         text = text//"a line of nodes along the edge of the tool, or a radius there"
         return
       end if
-      expected = suitable_length(min(radius, &
-          length**2/(8.0_wp*state%observed%largest_depth(tool))), model%thickness)
+      expected = length/part*suitable_length(min(radius, &
+          part**2/(8.0_wp*state%observed%largest_depth(tool))), model%thickness)
       text = text//"elements at most "//to_text(expected, 3)//" mm long on its radius of "// &
           to_text(radius, 3)//" mm"
     end associate
@@ -143,7 +143,17 @@ contains
     text = text//": "//levels_advice(adaptive, level, length/2.0_wp**halvings(length, expected))
   end function depth_warning
 
-  !> Return the length of elements with which a radius of a tool gives no warning, mm: the depth
+  !> Return the number of parts of an edge between contact points; 1 for faces with more than four
+  !> nodes.
+  pure integer function parts_of_edge(model)
+    type(model_t), intent(in) :: model
+
+    parts_of_edge = 1
+    if (size(model%face%node, 1) == 4) &
+        parts_of_edge = nint(sqrt(real(size(model%face_point, 1), wp))) - 1
+  end function parts_of_edge
+
+  !> Return the length between contact points with which a radius gives no warning, mm: the depth
   !> l**2/(8R) of elements of length l is slight, or notable neither for the thickness nor for the
   !> length. Where the tool is curved in two directions, or along the diagonal of a face, the radius
   !> is that of a cylinder that enters the elements as deep.
