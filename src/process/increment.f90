@@ -10,7 +10,8 @@ module dd3_process_increment
   use dd3_model_state, only : state_t
   use dd3_model_terms_list, only : begin_increment
   use dd3_model_terms_released, only : has_released
-  use dd3_model_terms_viscous, only : set_viscous, viscous_coefficients
+  use dd3_model_terms_viscous, only : set_viscous, viscous_range, viscous_strength, &
+      weaken_viscous
   use dd3_model_turning, only : set_rotations
   use dd3_process_elimination, only : sheet_equilibrium_t
   use dd3_process_equilibrium, only : equilibrium_t
@@ -29,6 +30,10 @@ module dd3_process_increment
   private
   public :: prepare_increment, try_increment, accept_increment
 
+  !> Iterations without contraction after which an attempt at an increment of a release is ended, near
+  !> the solution too: contact of nodes that buckle opens and closes for ever.
+  integer, parameter :: release_patience = 15
+
 contains
 
   !> Predict the increment and set its factor r. The verdict of the attempt is that of the
@@ -42,6 +47,9 @@ contains
     stepper%attempt = attempt_t(releases=has_released(committed%term) &
         .or. any(model%phase(committed%phase)%withdrawn))
     call begin_increment(committed%term, model, committed%configuration_t)
+    stepper%attempt%viscosity = viscous_strength(committed%term)
+    if (stepper%attempt%releases) stepper%attempt%viscous_range = viscous_range(model, &
+        committed%configuration_t)
     stepper%system%contact%turn_limited = .false.
     call predict(stepper%prediction, model, committed, stepper%system, stepper%attempt%solver, &
         stepper%attempt%verdict)
@@ -65,12 +73,16 @@ contains
         r => stepper%attempt%limit%r, phase => model%phase(committed%phase))
       equilibrium%solver = attempt%solver
       equilibrium%releases = attempt%releases
-      if (attempt%after_failure .and. attempt%releases) call set_viscous(trial%term, &
-          viscous_coefficients(model, committed, attempt%number - 1))
+      if (attempt%releases) then
+        equilibrium%far = 0.0_wp
+        equilibrium%patience = release_patience
+        call set_viscous(trial%term, model, attempt%viscosity)
+      end if
       equilibrium%system%contact%turn_limited = attempt%number > 1 .and. attempt%after_failure
       trial%increment = committed%increment + 1
       trial%progress = committed%progress + r*prediction%progress
       if (abs(1.0_wp - trial%progress) < progress_tolerance) trial%progress = 1.0_wp
+      attempt%ends_phase = trial%progress >= 1.0_wp
       trial%travel = committed%travel &
           + (trial%progress - committed%progress)*phase%length
       trial%contact%hint%due = .true.
@@ -174,6 +186,8 @@ contains
     committed = trial
     committed%sheet%enhanced = 0.0_wp
     call set_next_r_cap(committed, stepper%attempt)
+    call weaken_viscous(committed%term, stepper%attempt%course%iterations, &
+        stepper%attempt%viscous_range(2))
   end subroutine accept_increment
 
 end module dd3_process_increment

@@ -38,6 +38,8 @@ module dd3_process_limiters
   !> The largest modulus of a principal strain is at least this fraction of the norm of the tensor;
   !> 1/sqrt(3) less a margin for round-off.
   real(wp), parameter :: least_principal = 0.577_wp
+  !> Largest part of what is left of a phase in an increment with viscous forces.
+  real(wp), parameter :: largest_part = 0.5_wp
   !> Largest motion in an increment of a tool that is withdrawn, in thicknesses of the sheet.
   real(wp), parameter :: opening_step = 2.5_wp
   !> The first motion over the height of a contact layer, in the mixed formulation over the
@@ -72,6 +74,8 @@ contains
       end if
       call keep_smaller(limit, limit_t(r=state%r_cap, limiter="cutback"))
       call end_after("phase", 1.0_wp - state%progress)
+      if (attempt%viscosity > 0.0_wp) call end_after("viscous", &
+          largest_part*(1.0_wp - state%progress))
       call end_after("table", phase%next_kink(state%progress) - state%progress)
       call apply("gap", gap_limit)
       call apply("opening", opening_limit)

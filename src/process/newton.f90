@@ -36,6 +36,10 @@ module dd3_process_newton
   type, abstract :: newton_problem_t
     !> Norm over its scale at the trial solution, which tells convergence.
     real(wp) :: scaled_norm = 0.0_wp
+    !> Scaled norm above which, and number of iterations after which, iterations without contraction
+    !> are ended.
+    real(wp) :: far = 0.5_wp
+    integer :: patience = 10
   contains
     procedure(evaluate_interface), deferred :: evaluate
     procedure(is_admissible_interface), deferred :: is_admissible
@@ -118,10 +122,8 @@ module dd3_process_newton
   !> number of times that a step is shortened.
   real(wp), parameter :: margin = 0.1_wp
   integer, parameter :: most_times = 4
-  !> Iterations over which the contraction is measured; those with a norm above `far`, after which a
-  !> contraction of 1 or more ends them.
-  integer, parameter :: span = 5, patience = 10
-  real(wp), parameter :: far = 0.5_wp
+  !> Iterations over which the contraction is measured.
+  integer, parameter :: span = 5
 
 contains
 
@@ -166,7 +168,7 @@ contains
         if (problem%is_admissible()) return
       end if
       course%outcome = newton_diverging
-      if (line_search .and. is_lost(course%norm)) return
+      if (line_search .and. is_lost(course%norm, problem%far, problem%patience)) return
       course%outcome = newton_invalid
       call problem%linearise(course%verdict)
       if (course%verdict%outcome /= verdict_converged) return
@@ -250,8 +252,12 @@ contains
   end function between
 
   !> Whether the iterations do not approach a solution: far from it for long, without contraction.
-  pure logical function is_lost(norm)
+  pure logical function is_lost(norm, far, patience)
     real(wp), intent(in) :: norm(:)
+    !> Norm above which they are far.
+    real(wp), intent(in) :: far
+    !> Least number of iterations.
+    integer, intent(in) :: patience
 
     is_lost = .false.
     if (size(norm) < patience) return

@@ -5,6 +5,7 @@ module dd3_process_step_control
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t
   use dd3_model_state, only : state_t
+  use dd3_model_terms_viscous, only : stronger
   use dd3_process_newton, only : newton_course_t
   use dd3_process_norm, only : residual_t
   use dd3_process_open_edges, only : passage_t
@@ -32,6 +33,10 @@ module dd3_process_step_control
     logical :: after_failure = .false.
     !> Whether the phase releases the sheet, with steps from a contact layer to a size of the sheet.
     logical :: releases = .false.
+    !> Strength of the viscous forces of a release, and its range, N/mm.
+    real(wp) :: viscosity = 0.0_wp, viscous_range(2) = 0.0_wp
+    !> Whether the phase ends with the increment.
+    logical :: ends_phase = .false.
     !> Factor r with its limiter.
     type(limit_t) :: limit = limit_t()
     !> Bound by the limiter of contact forces alone; its r is huge if it sets none.
@@ -62,6 +67,8 @@ module dd3_process_step_control
   real(wp), parameter :: growth = 1.5_wp
   !> The former in a release, whose increments fail at a snap, not for their size.
   real(wp), parameter :: release_growth = 4.0_wp
+  !> Failures of an increment of a release up to which stronger viscous forces keep r.
+  integer, parameter :: most_stronger = 8
   !> Largest number of attempts up to which one beyond the early end of the phase is repeated.
   integer, parameter :: most_returns = 10
   !> Smallest increment of the progress of a phase.
@@ -69,15 +76,25 @@ module dd3_process_step_control
 
 contains
 
-  !> Reduce r for another attempt after one that failed.
+  !> Reduce r for another attempt after one that failed. In a release the viscous forces get
+  !> stronger, and those that held the contact forces that are left keep r, unless the phase would
+  !> end with them.
   pure subroutine cut_back(attempt, again)
     type(attempt_t), intent(inout) :: attempt
     !> False if r would fall below its minimum.
     logical, intent(out) :: again
 
-    again = attempt%limit%r*cutback_factor >= merge(release_min, cutback_min, attempt%releases)
+    real(wp) :: factor
+
+    factor = cutback_factor
+    if (attempt%releases) then
+      if (attempt%viscosity >= attempt%viscous_range(2) .and. attempt%number <= most_stronger &
+          .and. .not. attempt%ends_phase) factor = 1.0_wp
+      attempt%viscosity = stronger(attempt%viscosity, attempt%viscous_range)
+    end if
+    again = attempt%limit%r*factor >= merge(release_min, cutback_min, attempt%releases)
     if (.not. again) return
-    call try_again(attempt, cutback_factor, "cutback")
+    call try_again(attempt, factor, merge("cutback", "viscous", factor < 1.0_wp))
     attempt%after_failure = .true.
   end subroutine cut_back
 

@@ -1,8 +1,12 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Viscous forces against the velocity of the nodes, in attempts at an increment of a release after
-!> others that failed: a sheet that snaps has no equilibrium near the one before, and approaches the
-!> next in several increments. The state accepted is out of balance by these forces; the first
-!> attempt at each increment has none, so that the snap ends in equilibrium.
+!> Viscous forces against the velocity of the nodes, in a release: a sheet that snaps has no
+!> equilibrium near the one before, and approaches the next in several increments. A failed attempt
+!> makes them stronger; strong ones go on in the next increments, weaker after those that take few
+!> iterations, until they vanish: a wide sheet between tools that open buckles at many places, one
+!> after another. The state accepted is out of balance by these forces. No increment that ends a
+!> phase has them, so that a release ends in equilibrium.
+!> Source: C. T. Kelley, D. E. Keyes, SIAM J. Numer. Anal. 35 (1998) 508-523 (pseudo-transient
+!> continuation).
 module dd3_model_terms_viscous
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : sum_over_ranks
@@ -17,12 +21,16 @@ module dd3_model_terms_viscous
   use dd3_model_terms_term, only : extended, term_box_t, term_t
   implicit none
   private
-  public :: viscous_t, set_viscous, has_viscous, viscous_work, viscous_coefficients
+  public :: viscous_t, set_viscous, has_viscous, viscous_strength, viscous_work
+  public :: viscous_range, stronger, weaken_viscous
 
   !> The term.
   type, extends(term_t) :: viscous_t
-    !> Force of each node over its displacement in the increment, `(n_node)`, N/mm; not allocated
-    !> without viscous forces.
+    !> Sum of the coefficients of the nodes in the running increment, and at first in the next, N/mm;
+    !> 0 without viscous forces.
+    real(wp) :: strength = 0.0_wp
+    !> Coefficient of each node, its force over its displacement in the increment, by its volume,
+    !> `(n_node)`, N/mm; not allocated without viscous forces.
     real(wp), allocatable :: coefficient(:)
     !> Positions of the nodes at the start of the increment, `(3, n_node)`, mm.
     real(wp), allocatable :: before(:, :)
@@ -39,29 +47,31 @@ module dd3_model_terms_viscous
     procedure :: walk
   end type viscous_t
 
-  !> Least sum of the coefficients, over the stiffness of the sheet in bending: that of the first
-  !> attempt with viscous forces.
+  !> Least strength, over the stiffness of the sheet in bending.
   real(wp), parameter :: least = 1.0e-3_wp
-  !> Thicknesses by which the contact forces that are left would move the sheet against the
-  !> coefficients of attempt `reached`, and the factor from one attempt to the next behind it. A
-  !> sheet moves in an increment by what the least coefficients that converge let it.
+  !> Thicknesses by which the contact forces that are left would move the sheet against the strength
+  !> of failure `reached` in succession, and the least factor from one strength to the next.
   real(wp), parameter :: snap = 10.0_wp, growth = 8.0_wp
   integer, parameter :: reached = 3
+  !> Iterations of an increment that keeps the strength, and the power of their ratio to it that
+  !> reduces the strength.
+  real(wp), parameter :: many = 12.0_wp, power = 2.0_wp
 
 contains
 
-  !> Set the coefficients of an attempt.
-  subroutine set_viscous(terms, coefficient)
+  !> Set the strength of an attempt.
+  subroutine set_viscous(terms, model, strength)
     type(term_box_t), intent(inout) :: terms(:)
-    !> `(n_node)`, N/mm.
-    real(wp), intent(in) :: coefficient(:)
+    type(model_t), intent(in) :: model
+    !> N/mm.
+    real(wp), intent(in) :: strength
 
     integer :: k
 
     do k = 1, size(terms)
       select type (this => terms(k)%of)
       type is (viscous_t)
-        this%coefficient = coefficient
+        call set_strength(this, model, strength)
       end select
     end do
   end subroutine set_viscous
@@ -81,6 +91,21 @@ contains
     end do
   end function has_viscous
 
+  !> Return the strength, N/mm.
+  pure real(wp) function viscous_strength(terms) result(strength)
+    type(term_box_t), intent(in) :: terms(:)
+
+    integer :: k
+
+    strength = 0.0_wp
+    do k = 1, size(terms)
+      select type (this => terms(k)%of)
+      type is (viscous_t)
+        strength = this%strength
+      end select
+    end do
+  end function viscous_strength
+
   !> Return the work of viscous forces since the start of the running phase, mJ.
   pure real(wp) function viscous_work(terms) result(work)
     type(term_box_t), intent(in) :: terms(:)
@@ -96,36 +121,78 @@ contains
     end do
   end function viscous_work
 
-  !> Return the viscous force of each node over its displacement in the increment, N/mm, by its
-  !> volume.
-  function viscous_coefficients(model, state, attempt) result(coefficient)
+  !> Return the least strength and that which holds the contact forces that are left, N/mm.
+  function viscous_range(model, state) result(range)
     type(model_t), intent(in) :: model
     !> Committed.
     class(configuration_t), intent(in) :: state
-    !> Number of the attempt with viscous forces, from 1.
-    integer, intent(in) :: attempt
-    real(wp) :: coefficient(model%n_node)
+    real(wp) :: range(2)
 
-    real(wp) :: x(3, model%n_node), volume(model%element%n_point), force(1), low, high
+    real(wp) :: force(1)
+
+    force = sum(norm2(state%contact%lambda, dim=1))
+    call sum_over_ranks(1, force)
+    range(1) = least*bending_stiffness(model)
+    range(2) = max(force(1)/(snap*model%thickness), range(1)*growth**(reached - 1))
+  end function viscous_range
+
+  !> Return the strength after a failed attempt, N/mm.
+  pure real(wp) function stronger(strength, range)
+    !> Of the attempt, and of `viscous_range`, N/mm.
+    real(wp), intent(in) :: strength, range(2)
+
+    real(wp) :: factor
+
+    stronger = range(1)
+    if (strength < range(1)) return
+    factor = (range(2)/range(1))**(1.0_wp/real(reached - 1, wp))
+    stronger = strength*merge(factor, growth, strength*factor <= range(2)*(1.0_wp + epsilon(factor)))
+  end function stronger
+
+  !> Reduce the strength of the next increment by the iterations of the one accepted.
+  subroutine weaken_viscous(terms, iterations, least)
+    type(term_box_t), intent(inout) :: terms(:)
+    integer, intent(in) :: iterations
+    !> Strength below which there is none, N/mm.
+    real(wp), intent(in) :: least
+
+    integer :: k
+
+    do k = 1, size(terms)
+      select type (this => terms(k)%of)
+      type is (viscous_t)
+        if (.not. this%strength > 0.0_wp) return
+        this%strength = this%strength*min(1.0_wp, (real(iterations, wp)/many)**power)
+        if (this%strength < least) this%strength = 0.0_wp
+      end select
+    end do
+  end subroutine weaken_viscous
+
+  !> Set the strength, and the coefficients of the nodes by their volumes.
+  subroutine set_strength(self, model, strength)
+    type(viscous_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> N/mm.
+    real(wp), intent(in) :: strength
+
+    real(wp) :: x(3, model%n_node), volume(model%element%n_point)
     integer :: e
 
+    self%strength = strength
+    if (allocated(self%coefficient)) deallocate (self%coefficient)
+    if (.not. strength > 0.0_wp) return
+    allocate (self%coefficient(model%n_node), source=0.0_wp)
     x = model%start_positions()
-    coefficient = 0.0_wp
     do e = 1, model%n_element
       associate (nodes => model%connectivity(:, e))
         call point_volumes(model%element, x(:, nodes), volume)
-        coefficient(nodes) = coefficient(nodes) + sum(volume)/real(size(nodes), wp)
+        self%coefficient(nodes) = self%coefficient(nodes) + sum(volume)/real(size(nodes), wp)
       end associate
     end do
-    force = sum(norm2(state%contact%lambda, dim=1))
-    call sum_over_ranks(1, force)
-    low = least*bending_stiffness(model)
-    high = max(force(1)/(snap*model%thickness), low*growth**(reached - 1))
-    coefficient = coefficient/sum(coefficient)*growth**max(0, attempt - reached) &
-        *low*(high/low)**(real(min(attempt, reached) - 1, wp)/real(reached - 1, wp))
-  end function viscous_coefficients
+    self%coefficient = strength/sum(self%coefficient)*self%coefficient
+  end subroutine set_strength
 
-  !> Keep the work until the start of the phase.
+  !> Keep the work until the start of the phase, and begin without viscous forces.
   subroutine begin_phase(self, model, number, state)
     class(viscous_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -133,17 +200,17 @@ contains
     type(configuration_t), intent(in) :: state
 
     self%start = self%work
-    if (allocated(self%coefficient)) deallocate (self%coefficient)
+    call set_strength(self, model, 0.0_wp)
   end subroutine begin_phase
 
-  !> Begin without viscous forces.
+  !> Begin with the strength that the increment before has left.
   subroutine begin_increment(self, model, committed)
     class(viscous_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     type(configuration_t), intent(in) :: committed
 
     self%before = committed%x
-    if (allocated(self%coefficient)) deallocate (self%coefficient)
+    call set_strength(self, model, self%strength)
   end subroutine begin_increment
 
   !> Add the forces on the nodes.
@@ -214,6 +281,7 @@ contains
     class(viscous_t), intent(inout) :: self
     class(state_visitor_t), intent(inout) :: visitor
 
+    call visitor%one_real("viscous_strength", self%strength)
     call visitor%one_real("viscous_work", self%work)
     call visitor%one_real("start_viscous_work", self%start)
   end subroutine walk
