@@ -4,7 +4,8 @@
 !>
 !> In the frame of a tool, a place of the sheet moves by at most the travel s of the tools and
 !> slides by c s at right angles, so that it stays within s sqrt(1 + c^2). The largest turn of the
-!> tool's normal within this distance of an element is the one that it may have to follow.
+!> tool's normal within this distance of an element is the one that it may have to follow; where the
+!> tool is curved in two directions to the same side it is the sum of both (turn_field.f90).
 module dd3_model_sheet_turn
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : largest_over_ranks, this_rank

@@ -5,13 +5,16 @@ module dd3_model_tolerances
   use dd3_base_kinds, only : wp
   implicit none
   private
-  public :: tolerances_t, new_tolerances, start_depth, wrong_side_depth, tangential
+  public :: tolerances_t, new_tolerances, notable_depth, start_depth, wrong_side_depth, tangential
 
   !> Depth inside the sheet at which a tool may start, mm.
   real(wp), parameter :: start_depth = 1.0e-3_wp
   !> Depth up to which a start inside the sheet is reported, in thicknesses: a node farther behind a
   !> surface may lie beyond its border.
   real(wp), parameter :: wrong_side_depth = 10.0_wp
+  !> Depth of a tool between the contact points that is reported, in thicknesses, and for which an
+  !> element is divided.
+  real(wp), parameter :: notable_depth = 0.1_wp
   !> Below this |n.f|, of two unit vectors, a force f counts as tangential to the surface.
   real(wp), parameter :: tangential = 1.0e-6_wp
 

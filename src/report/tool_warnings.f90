@@ -10,6 +10,7 @@ module dd3_report_tool_warnings
       touching_tools
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
+  use dd3_model_tolerances, only : notable_depth
   use dd3_process_open_edges, only : edge_name
   use dd3_report_suitable_levels, only : halvings, levels_advice
   use dd3_report_tool_crossing, only : crossing_t, find_crossing
@@ -19,10 +20,10 @@ module dd3_report_tool_warnings
   private
   public :: add_tool_warnings, depth_warning
 
-  !> Depth between the nodes that is reported, relative to the thickness, and relative to the edges
-  !> of the face: the sagitta l/(8R) of a chord l on a radius R is pi/64 with four elements to the
-  !> quarter circle. A smaller depth than `slight_depth` thicknesses is not reported.
-  real(wp), parameter :: notable_depth = 0.1_wp, notable_slope = acos(-1.0_wp)/64.0_wp
+  !> Depth between the nodes that is reported, besides `notable_depth` thicknesses, relative to the
+  !> edges of the face: the sagitta l/(8R) of a chord l on a radius R is pi/64 with four elements to
+  !> the quarter circle. A smaller depth than `slight_depth` thicknesses is not reported.
+  real(wp), parameter :: notable_slope = acos(-1.0_wp)/64.0_wp
   real(wp), parameter :: slight_depth = 0.02_wp
 
 contains

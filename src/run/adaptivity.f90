@@ -2,15 +2,15 @@
 !> Adaptive refinement of the sheet in a run: which elements are divided and when.
 !>
 !> An element is divided before it comes to lie on a radius of a tool that turns by more than the
-!> angle of the input over the length of the element, as the exact surfaces of the tools tell: later
-!> the forces would change, as the length of a chord is not that of its arc. What of a tool the
-!> sheet can meet soon is near and has nearly the direction of the sheet, which must rotate to lie
-!> on the rest. As soon as an element would meet such a radius in the next part of the travel, all
-!> that would in a longer part are divided, so that the mesh changes a few times only. Where the
-!> sheet turns by more than the angle without a tool, as where it bends freely, it is divided too;
-!> an increment in which it comes to turn by far more is made again on the finer mesh. Elements of a
-!> sheet that yields in compression, and that is not held on both faces, are divided if they are too
-!> long for its wrinkles.
+!> angle of the input over the length of the element, or that would enter it between its nodes by a
+!> depth that is reported, as the exact surfaces of the tools tell: later the forces would change, as
+!> the length of a chord is not that of its arc. What of a tool the sheet can meet soon is near and
+!> has nearly the direction of the sheet, which must rotate to lie on the rest. As soon as an element
+!> would meet such a radius in the next part of the travel, all that would in a longer part are
+!> divided, so that the mesh changes a few times only. Where the sheet turns by more than the angle
+!> without a tool, as where it bends freely, it is divided too; an increment in which it comes to
+!> turn by far more is made again on the finer mesh. Elements of a sheet that yields in compression,
+!> and that is not held on both faces, are divided if they are too long for its wrinkles.
 !>
 !> Of several ranks every one refines the whole sheet, with the same marks, and then keeps its part
 !> of a new division.
@@ -26,6 +26,7 @@ module dd3_run_adaptivity
   use dd3_model_sheet_compression, only : find_compressed
   use dd3_model_sheet_turn, only : turn_of_sheet, turn_of_tools_ahead
   use dd3_model_state, only : state_t
+  use dd3_model_tolerances, only : notable_depth
   use dd3_settings_adaptive, only : adaptive_spec_t
   use dd3_setup_model, only : rebuild_model
   use dd3_sheet_grid, only : grid_t, new_grid
@@ -73,6 +74,7 @@ module dd3_run_adaptivity
     procedure :: judge
     procedure :: find_marks
     procedure :: refine
+    procedure :: tool_limit
   end type adaptivity_t
 
 contains
@@ -129,7 +131,7 @@ contains
     logical, allocatable, intent(out) :: marked(:)
 
     logical, dimension(model%n_element) :: free, compressed, yielding, too_long
-    real(wp), dimension(model%n_element) :: of_sheet, of_tools
+    real(wp), dimension(model%n_element) :: of_sheet, of_tools, limit
 
     allocate (marked(model%n_element), source=.false.)
     if (.not. may_refine(self, model, state)) return
@@ -140,14 +142,26 @@ contains
       call turn_of_tools_ahead(model, state, self%field, free, near, near_rotation*angle, of_tools)
       call find_compressed(model, state, compressed, yielding)
       too_long = edge_lengths(model, state%x) > longest*model%thickness
-      if (.not. any(agreed_marks(marked .or. (free .and. (max(of_sheet, of_tools) > over*angle &
-          .or. (too_long .and. yielding)))))) return
+      limit = self%tool_limit(edge_lengths(model, state%x), model%thickness)
+      if (.not. any(agreed_marks(marked .or. (free .and. (of_sheet > over*angle .or. &
+          of_tools > over*limit .or. (too_long .and. yielding)))))) return
       call turn_of_tools_ahead(model, state, self%field, free, ahead, rotation_ahead*angle, &
           of_tools)
-      marked = agreed_marks(marked .or. (free .and. (max(of_sheet, of_tools) > angle .or. &
+      marked = agreed_marks(marked .or. (free .and. (of_sheet > angle .or. of_tools > limit .or. &
           (too_long .and. compressed))))
     end associate
   end subroutine find_marks
+
+  !> Return the turn of a tool above which an element is divided, rad: the angle of the input, or the
+  !> turn whose depth between the nodes, turn*length/8, is `notable_depth` once it is exceeded by
+  !> `over`.
+  elemental real(wp) function tool_limit(self, length, thickness) result(limit)
+    class(adaptivity_t), intent(in) :: self
+    !> Mean edge of the element, and thickness of the sheet, mm.
+    real(wp), intent(in) :: length, thickness
+
+    limit = min(self%spec%angle, 8.0_wp*notable_depth*thickness/(over*length))
+  end function tool_limit
 
   !> Judge a converged increment: too late if the sheet turns by far more than the angle over an
   !> element that may be divided; then all above the angle are divided before it is made again. It

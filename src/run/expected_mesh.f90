@@ -5,7 +5,7 @@
 !> At the end of a phase the tools are at their places of the input (those that are pressed are left
 !> out), and the sheet is a membrane between them: the least sum of squares of the slopes of its
 !> height z over the plane, on a grid with half the length of the undivided elements. Parts of it
-!> count as divided where a tool turns by more than the angle of the input within the reach of an
+!> count as divided where a tool turns by more than the limit of the run within the reach of an
 !> element, and walls steeper than 45 degrees, whose material has come over such a radius. Its area
 !> is that of the blank. The largest number of all phases counts.
 module dd3_run_expected_mesh
@@ -192,7 +192,7 @@ contains
 
   contains
 
-    !> Whether a tool turns by more than the angle within the reach of an element of a level.
+    !> Whether a tool turns by more than the limit within the reach of an element of a level.
     logical function meets_turn(self, i, j, level) result(meets)
       type(membrane_t), intent(in) :: self
       integer, intent(in) :: i, j, level
@@ -208,7 +208,8 @@ contains
         if (.not. model%phase(number)%acts(tool)) cycle
         placement = state%placement(tool)
         meets = turn_over(adaptivity%field(tool), placement%to_tool(x), reach, &
-            length*0.5_wp**level) > adaptivity%spec%angle
+            length*0.5_wp**level) &
+            > adaptivity%tool_limit(model%undivided_length*0.5_wp**level, model%thickness)
         if (meets) return
       end do
     end function meets_turn

@@ -3,7 +3,10 @@
 !> lie on it. At a point of the surface it is the largest angle between the normals at two points
 !> in the ball around it whose diameter is the length a: 2 asin(a/(2 R)), the angle over the chord
 !> a, on a cylinder or a sphere of radius R, the angle of a kink whatever the length, and the whole
-!> angle of a fillet that is shorter than a.
+!> angle of a fillet that is shorter than a. Where the surface is curved to the same side at right
+!> angles too, the turn in that direction is added: the bilinear patch of a square element with the
+!> edge a deviates from a surface with the curvatures k_1 and k_2 by (k_1 + k_2) a^2/8, whatever the
+!> direction of its edges. Where it is curved to the other side, nothing is taken off.
 !>
 !> Points of the surface are spaced (surface_samples.f90), and the two outermost in the ball are
 !> less than a apart. Pairs at a distance d > a count too, up to a spacing outside the ball, with
@@ -39,7 +42,7 @@ module dd3_tools_turn_field
     !> Lengths, ascending, mm.
     real(wp), allocatable :: length(:)
     !> Points of the surface with the turn over each length, rad, along the difference of the
-    !> normals; those without a turn left out.
+    !> normals, and that at right angles; those without a turn left out.
     type(vector_tree_t), allocatable :: level(:)
   end type turn_field_t
 
@@ -60,17 +63,17 @@ contains
     real(wp), intent(in) :: length(:)
 
     type(surface_samples_t) :: sample
-    real(wp), allocatable :: turn(:, :)
+    real(wp), allocatable :: turn(:, :, :)
     integer :: l, i
 
     self%length = length
     allocate (self%level(size(length)))
     do l = 1, size(length)
       call new_surface_samples(sample, surface, length(l))
-      allocate (turn(3, sample%n))
+      allocate (turn(3, 2, sample%n))
       call find_turns(sample, length(l), turn)
-      associate (turned => pack([(i, i=1, sample%n)], norm2(turn, dim=1) > resolution))
-        call new_vector_tree(self%level(l), sample%x(:, turned), turn(:, turned), &
+      associate (turned => pack([(i, i=1, sample%n)], norm2(turn(:, 1, :), dim=1) > resolution))
+        call new_vector_tree(self%level(l), sample%x(:, turned), turn(:, :, turned), &
             sample%normal(:, turned))
       end associate
       deallocate (turn)
@@ -81,8 +84,8 @@ contains
   subroutine find_turns(sample, length, turn)
     type(surface_samples_t), intent(in) :: sample
     real(wp), intent(in) :: length
-    !> Along the difference of the normals, `(3, n)`, rad.
-    real(wp), intent(out) :: turn(:, :)
+    !> Along the difference of the normals, and at right angles, `(3, 2, n)`, rad.
+    real(wp), intent(out) :: turn(:, :, :)
 
     type(cells_t) :: cells
     integer, allocatable :: near(:)
@@ -92,47 +95,94 @@ contains
     allocate (near(64))
     do i = 1, sample%n
       call find_near(cells, sample%x, i, near, n)
-      turn(:, i) = turn_of_pairs(sample%x(:, near(:n)), sample%normal(:, near(:n)), &
+      turn(:, :, i) = turn_of_pairs(sample%x(:, near(:n)), sample%normal(:, near(:n)), &
           sample%x(:, i), length)
     end do
   end subroutine find_turns
 
-  !> Return the largest angle between normals of points, rad, along the difference of the normals.
+  !> Return the largest angle between normals of points, rad, along the difference of the normals,
+  !> and the angle at right angles by which the surface turns to the same side.
   pure function turn_of_pairs(x, normal, centre, length) result(turn)
     !> Points up to a spacing outside the ball, `(3, n)`, mm, and their normals.
     real(wp), intent(in) :: x(:, :), normal(:, :)
     !> Centre and diameter of the ball, mm.
     real(wp), intent(in) :: centre(3), length
-    real(wp) :: turn(3)
+    real(wp) :: turn(3, 2)
 
     logical :: inside(size(x, 2))
-    real(wp) :: largest, square, distance
+    real(wp) :: largest, square, axis(3), side
     integer :: i, j, pair(2)
 
     do i = 1, size(x, 2)
       inside(i) = sum((x(:, i) - centre)**2) <= (0.5_wp*length*(1.0_wp + round_off))**2
     end do
+    turn = 0.0_wp
     largest = 0.0_wp
     pair = 1
     do j = 2, size(x, 2)
       do i = 1, j - 1
         square = (normal(1, i) - normal(1, j))**2 + (normal(2, i) - normal(2, j))**2 &
             + (normal(3, i) - normal(3, j))**2
-        if (square <= largest .or. square > largest_square) cycle
-        distance = sum((x(:, i) - x(:, j))**2)
-        if (distance > length**2) then
-          if (square > largest_outside) cycle
-          square = square*length**2/distance
-        else if (.not. (inside(i) .and. inside(j))) then
-          cycle
-        end if
+        if (square <= largest) cycle
+        square = square*factor_of_pair(i, j, square)
         if (square <= largest) cycle
         largest = square
         pair = [i, j]
       end do
     end do
-    turn = normal(:, pair(1)) - normal(:, pair(2))
-    turn = 2.0_wp*asin(0.5_wp*sqrt(largest))*turn/max(norm2(turn), tiny(1.0_wp))
+    if (largest <= resolution**2) return
+    associate (along => normal(:, pair(1)) - normal(:, pair(2)), &
+        upright => normal(:, pair(1)) + normal(:, pair(2)))
+      turn(:, 1) = 2.0_wp*asin(0.5_wp*sqrt(largest))*along/norm2(along)
+      axis = along([2, 3, 1])*upright([3, 1, 2]) - along([3, 1, 2])*upright([2, 3, 1])
+      axis = axis/norm2(axis)
+      side = sign(1.0_wp, dot_product(along, x(:, pair(1)) - x(:, pair(2))))
+    end associate
+    turn(:, 2) = 2.0_wp*asin(0.5_wp*largest_along_axis())*axis
+
+  contains
+
+    !> Return the largest difference of normals along the axis, of pairs that lie rather along it
+    !> than across it and turn to the same side as the first one.
+    pure real(wp) function largest_along_axis() result(largest)
+      real(wp) :: place(size(x, 2)), component(size(x, 2)), product, distance
+      integer :: i, j
+
+      place = matmul(axis, x)
+      component = side*matmul(axis, normal)
+      largest = 0.0_wp
+      do j = 2, size(x, 2)
+        do i = 1, j - 1
+          product = (component(i) - component(j))*(place(i) - place(j))
+          if (product <= 0.0_wp) cycle
+          distance = norm2(x(:, i) - x(:, j))
+          if (2.0_wp*(place(i) - place(j))**2 < distance**2) cycle
+          if (product <= largest*distance) cycle
+          largest = max(largest, product/distance &
+              *sqrt(factor_of_pair(i, j, sum((normal(:, i) - normal(:, j))**2))))
+        end do
+      end do
+    end function largest_along_axis
+
+    !> Return the factor with which the square of the difference of two normals counts; 0 for a pair
+    !> that does not.
+    pure real(wp) function factor_of_pair(i, j, square) result(factor)
+      integer, intent(in) :: i, j
+      !> Square of the difference.
+      real(wp), intent(in) :: square
+
+      real(wp) :: distance
+
+      factor = 0.0_wp
+      if (square > largest_square) return
+      distance = sum((x(:, i) - x(:, j))**2)
+      if (distance > length**2) then
+        if (square <= largest_outside) factor = length**2/distance
+      else if (inside(i) .and. inside(j)) then
+        factor = 1.0_wp
+      end if
+    end function factor_of_pair
+
   end function turn_of_pairs
 
   !> Sort points into cells.
@@ -214,8 +264,8 @@ contains
     real(wp), intent(in) :: length
     !> Normals of the points that count; all without.
     type(facing_t), intent(in), optional :: facing
-    !> Vectors g_1 and g_2 in the plane of an element, and its unit normal: a turn along e in this
-    !> plane counts times min(1, 1/max(|e.g_1|, |e.g_2|)).
+    !> Vectors g_1 and g_2 in the plane of an element, and its unit normal: each turn, along e in
+    !> this plane, counts times min(1, 1/max(|e.g_1|, |e.g_2|)).
     real(wp), intent(in), optional :: frame(3, 3)
 
     real(wp) :: shorter, longer

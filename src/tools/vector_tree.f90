@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Points of a surface with a vector each, and the largest length of a vector within a distance of a
-!> place. The points are sorted along the Z-order curve (Morton 1966); blocks of them are the leaves
-!> of a balanced tree of boxes with the largest length below each node, so that a search leaves out
-!> all that is too far or too small.
+!> Points of a surface with two vectors each, and the largest sum of their lengths within a distance
+!> of a place. The points are sorted along the Z-order curve (Morton 1966); blocks of them are the
+!> leaves of a balanced tree of boxes with the largest sum below each node, so that a search leaves
+!> out all that is too far or too small.
 module dd3_tools_vector_tree
   use dd3_base_kinds, only : i8, wp
   use dd3_base_sorting, only : ascending
@@ -30,12 +30,12 @@ module dd3_tools_vector_tree
   !> The tree: node i has the halves 2 i and 2 i + 1; the last `n_leaf` nodes are the leaves.
   type :: vector_tree_t
     integer :: n = 0, n_leaf = 0
-    !> Positions in the order of the curve, mm, and vectors, `(3, n)`.
-    real(wp), allocatable :: x(:, :), vector(:, :)
-    !> Unit normals of the surface there, `(3, n)`.
-    real(wp), allocatable :: normal(:, :)
+    !> Positions in the order of the curve, mm, and unit normals of the surface there, `(3, n)`.
+    real(wp), allocatable :: x(:, :), normal(:, :)
+    !> Vectors, `(3, 2, n)`.
+    real(wp), allocatable :: vector(:, :, :)
     !> Lower and upper corner of the box of each node, `(3, 2, 2*n_leaf - 1)`, mm, and the largest
-    !> length of a vector in it.
+    !> sum of the lengths of the vectors of a point in it.
     real(wp), allocatable :: box(:, :, :), largest(:)
   end type vector_tree_t
 
@@ -44,10 +44,8 @@ contains
   !> Make the tree.
   subroutine new_vector_tree(self, x, vector, normal)
     type(vector_tree_t), intent(out) :: self
-    !> `(3, n)`, positions in mm.
-    real(wp), intent(in) :: x(:, :), vector(:, :)
-    !> Unit normals of the surface, `(3, n)`.
-    real(wp), intent(in) :: normal(:, :)
+    !> Positions, `(3, n)`, mm, vectors, `(3, 2, n)`, and unit normals of the surface, `(3, n)`.
+    real(wp), intent(in) :: x(:, :), vector(:, :, :), normal(:, :)
 
     integer, allocatable :: order(:)
     integer :: i, first, last
@@ -56,7 +54,7 @@ contains
     if (self%n == 0) return
     order = ascending(places_on_curve(x))
     self%x = x(:, order)
-    self%vector = vector(:, order)
+    self%vector = vector(:, :, order)
     self%normal = normal(:, order)
     self%n_leaf = 1
     do while (self%n_leaf*leaf_size < self%n)
@@ -69,7 +67,7 @@ contains
         ! Those behind the last point are empty.
         self%box(:, 1, i) = minval(self%x(:, first:last), dim=2)
         self%box(:, 2, i) = maxval(self%x(:, first:last), dim=2)
-        self%largest(i) = maxval(norm2(self%vector(:, first:last), dim=1))
+        self%largest(i) = maxval(sum(norm2(self%vector(:, :, first:last), dim=1), dim=1))
       else
         self%box(:, 1, i) = min(self%box(:, 1, 2*i), self%box(:, 1, 2*i + 1))
         self%box(:, 2, i) = max(self%box(:, 2, 2*i), self%box(:, 2, 2*i + 1))
@@ -112,21 +110,21 @@ contains
     end do
   end function places_on_curve
 
-  !> Return the largest length of the vectors within a distance of a place, or that of the lengths
-  !> multiplied by a factor of their directions.
+  !> Return the largest sum of the lengths of the vectors of a point within a distance of a place, or
+  !> of the lengths multiplied by a factor of their directions.
   pure real(wp) function largest_within(self, x, distance, resolution, facing, frame) result(largest)
     type(vector_tree_t), intent(in) :: self
     real(wp), intent(in) :: x(3)
     !> mm.
     real(wp), intent(in) :: distance
-    !> Difference from the largest length that may be left out.
+    !> Difference from the largest sum that may be left out.
     real(wp), intent(in) :: resolution
     !> Normals of the points that count; all without.
     type(facing_t), intent(in), optional :: facing
     !> As for `factor_along`.
     real(wp), intent(in), optional :: frame(3, 3)
 
-    real(wp) :: length
+    real(wp) :: length(2)
     integer :: stack(most_levels), depth, node, first, last, i
 
     largest = 0.0_wp
@@ -145,9 +143,10 @@ contains
           if (present(facing)) then
             if (dot_product(self%normal(:, i), facing%normal) < facing%least_cosine) cycle
           end if
-          length = norm2(self%vector(:, i))
-          if (present(frame)) length = length*factor_along(self%vector(:, i), frame)
-          largest = max(largest, length)
+          length = norm2(self%vector(:, :, i), dim=1)
+          if (present(frame)) length = length*[factor_along(self%vector(:, 1, i), frame), &
+              factor_along(self%vector(:, 2, i), frame)]
+          largest = max(largest, sum(length))
         end do
         cycle
       end if
