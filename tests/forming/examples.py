@@ -33,8 +33,8 @@ REPORT = studies.ROOT / "docs" / "reports" / "examples.md"
 NOW, BEFORE, FINE, UNIFORM = "refined", "uniform, before", "uniform, fine", "uniform"
 FINE_REFINED = "refined, fine"
 BEYOND = 0.075  # part of the travel from which forces are compared
-HEAD = ["example", "mesh", "elements", "increments", "iterations", "CPU seconds", "of the fine mesh", "force, %",
-        "force, rms, %", "thickness, %", "springback, mm", "springback, %", "shape, mm", "twist, degrees", "warnings"]
+HEAD = ["example", "mesh", "elements", "increments", "cut-backs", "iterations", "CPU seconds", "of the fine mesh",
+        "force, %", "force, rms, %", "thickness, %", "springback, mm", "springback, %", "shape, mm", "twist, degrees", "warnings"]
 
 
 @dataclass
@@ -131,19 +131,19 @@ def make(options, name, mesh, example, settings):
 
 
 def row_of(name, mesh, result, fine):
-    """Return the row of a run."""
+    """Return the row of a run; without differences if the reference is not there."""
     total = totals(read_table(result.folder / "status.csv"))
-    words = [name, mesh, str(result.elements), str(total.increments), str(total.iterations), f"{result.cpu:.0f}",
-             f"{result.cpu/fine.cpu:.2f}"]
-    if result is fine:
-        words += ["", "", ""]
+    words = [name, mesh, str(result.elements), str(total.increments), str(total.cutbacks), str(total.iterations),
+             f"{result.cpu:.0f}", f"{result.cpu/fine.cpu:.2f}" if fine else ""]
+    other = fine if fine is not result else None
+    if other:
+        words += [f"{100*value:.2f}" for value in (*result.forces_against(other), result.thickness/other.thickness - 1)]
     else:
-        words += [f"{100*value:.2f}" for value in (*result.forces_against(fine), result.thickness/fine.thickness - 1)]
+        words += ["", "", ""]
     if result.found:
-        largest, reference = result.found.distance().max(), fine.found.distance().max()
-        turned = twist(result.sheet, result.found, result.mirror)
-        words += [f"{largest:.3f}", "" if result is fine else f"{100*(largest/reference - 1):+.1f}",
-                  "" if result is fine else f"{result.distance_to(fine):.3f}", f"{turned[1]:.2f}" if turned else ""]
+        largest, turned = result.found.distance().max(), twist(result.sheet, result.found, result.mirror)
+        words += [f"{largest:.3f}", f"{100*(largest/other.found.distance().max() - 1):+.1f}" if other else "",
+                  f"{result.distance_to(other):.3f}" if other else "", f"{turned[1]:.2f}" if turned else ""]
     else:
         words += ["", "", "", ""]
     return [*words, ", ".join(sorted({warning["code"] for warning in result.job["warnings"]}))]
@@ -155,11 +155,10 @@ def main():
     rows, jobs, complete = [], [], True
     for name, example in EXAMPLES.items():
         results = {mesh: make(options, name, mesh, example, settings) for mesh, settings in example.runs().items()}
-        if not all(results.values()):
-            complete = False
-            continue
-        rows += [row_of(name, mesh, result, list(results.values())[-1]) for mesh, result in results.items()]
-        jobs += [result.job for result in results.values()]
+        complete = complete and all(results.values())
+        fine = list(results.values())[-1]
+        rows += [row_of(name, mesh, result, fine) for mesh, result in results.items() if result]
+        jobs += [result.job for result in results.values() if result]
     text = studies.table(HEAD, rows)
     print(text)
     if options.write and rows:
