@@ -126,18 +126,19 @@ contains
     type(message_list_t), intent(inout) :: notes
 
     real(wp), allocatable :: reaction(:)
-    real(wp) :: all_reactions(3, model%n_node), scale
+    real(wp) :: all_reactions(3, model%n_node), stiffness(3), scale
     integer :: k
 
     associate (support => model%phase(state%phase)%support)
       if (size(support, 2) == 0) return
       allocate (reaction(size(support, 2)))
       all_reactions = reactions(model, state)
+      stiffness = spring_stiffness(model, state)
       do k = 1, size(support, 2)
         associate (node => support(1, k), axis => support(2, k))
           reaction(k) = all_reactions(axis, node)
           if (model%phase(state%phase)%floats) reaction(k) = &
-              spring_force(spring_stiffness(model, state), state, node, axis)
+              spring_force(stiffness(axis), state, node, axis)
         end associate
       end do
       k = maxloc(abs(reaction), dim=1)

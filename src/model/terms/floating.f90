@@ -1,9 +1,11 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Springs at the chosen supports of a sheet from which tools are withdrawn, which floats between
 !> them. Rigid supports would take the forces of the forming at single nodes, as the tools do not
-!> leave at the same rate: the springs are soft at first, and stiff when the tools have opened by
-!> twice the thickness and only forces of bending are left, so that the sheet does not follow a tool
-!> on which it hangs. They are as many as the free rigid motions and have no force in the end.
+!> leave at the same rate: the springs are soft at first. Along the paths of the tools they are
+!> stiff when these have opened by twice the thickness, so that the sheet does not follow a tool on
+!> which it hangs. Across the paths they are stiff only when all tools have left: until then these
+!> hold the sheet at another place than that of the start, and a stiff spring would pull at one node
+!> against them. They are as many as the free rigid motions and have no force in the end.
 module dd3_model_terms_floating
   use dd3_base_kinds, only : wp
   use dd3_element_kinematics, only : point_volumes
@@ -11,6 +13,7 @@ module dd3_model_terms_floating
   use dd3_linalg_partition, only : holds_row
   use dd3_model_configuration, only : configuration_t
   use dd3_model_model, only : model_t
+  use dd3_model_phase, only : phase_t
   use dd3_model_terms_term, only : term_t
   implicit none
   private
@@ -23,24 +26,43 @@ module dd3_model_terms_floating
     procedure :: add_stiffness
   end type floating_t
 
-  !> Stiffness over that of the sheet in bending, G V t**2/L**4 with the volume V, the thickness t and
-  !> the size L, at the start, and the decades by which it rises until the tools have opened by so
-  !> many thicknesses.
-  real(wp), parameter :: soft = 0.1_wp, decades = 5.0_wp, opened = 2.0_wp
+  !> Stiffness over that of the sheet in bending, G V t**2/L**4 with the volume V, the thickness t
+  !> and the size L: at the start, and when the tools have opened by so many thicknesses, along and
+  !> across their paths.
+  real(wp), parameter :: soft = 0.1_wp, along = 1.0e4_wp, across = 100.0_wp, opened = 2.0_wp
+  !> Cosine between a path and an axis from which the axis counts as along it.
+  real(wp), parameter :: least_cosine = 0.2_wp
 
 contains
 
-  !> Return the stiffness of the springs, N/mm.
-  pure real(wp) function spring_stiffness(model, state)
+  !> Return the stiffness of the springs along the axes, N/mm.
+  pure function spring_stiffness(model, state) result(stiffness)
     type(model_t), intent(in) :: model
     class(configuration_t), intent(in) :: state
+    real(wp) :: stiffness(3)
 
-    real(wp) :: distance
+    real(wp) :: path
 
-    distance = model%phase(state%phase)%most_opened(state%progress)
-    spring_stiffness = soft*10.0_wp**(decades*min(1.0_wp, distance/(opened*model%thickness))) &
-        *bending_stiffness(model)
+    associate (phase => model%phase(state%phase))
+      path = phase%most_opened(state%progress)
+      stiffness = merge(along, across, state%open .or. open_along(phase))
+      stiffness = soft*(stiffness/soft)**min(1.0_wp, path/(opened*model%thickness)) &
+          *bending_stiffness(model)
+    end associate
   end function spring_stiffness
+
+  !> Whether a tool is withdrawn along an axis, in which the sheet could hang on it, `(3)`.
+  pure function open_along(phase) result(along_axis)
+    type(phase_t), intent(in) :: phase
+    logical :: along_axis(3)
+
+    integer :: axis
+
+    do axis = 1, 3
+      along_axis(axis) = any(phase%withdrawn .and. abs(phase%move(axis, :)) &
+          >= least_cosine*norm2(phase%move, dim=1))
+    end do
+  end function open_along
 
   !> Return the stiffness of the sheet in bending, N/mm.
   pure real(wp) function bending_stiffness(model)
@@ -76,7 +98,7 @@ contains
     type(configuration_t), intent(in) :: state
     real(wp), intent(inout) :: force(:, :)
 
-    real(wp) :: stiffness
+    real(wp) :: stiffness(3)
     integer :: i
 
     associate (phase => model%phase(state%phase))
@@ -84,7 +106,7 @@ contains
       stiffness = spring_stiffness(model, state)
       do i = 1, size(phase%support, 2)
         associate (node => phase%support(1, i), axis => phase%support(2, i))
-          force(axis, node) = force(axis, node) + spring_force(stiffness, state, node, axis)
+          force(axis, node) = force(axis, node) + spring_force(stiffness(axis), state, node, axis)
         end associate
       end do
     end associate
@@ -97,7 +119,7 @@ contains
     type(configuration_t), intent(in) :: state
     type(block_matrix_t), intent(inout) :: stiffness
 
-    real(wp) :: spring
+    real(wp) :: spring(3)
     integer :: k, i
 
     associate (phase => model%phase(state%phase), value => stiffness%value)
@@ -107,7 +129,7 @@ contains
         associate (node => phase%support(1, i), axis => phase%support(2, i))
           if (.not. holds_row(stiffness, node)) cycle
           k = stiffness%diagonal(node)
-          value(axis, axis, k) = value(axis, axis, k) + spring
+          value(axis, axis, k) = value(axis, axis, k) + spring(axis)
         end associate
       end do
     end associate
