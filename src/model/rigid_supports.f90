@@ -21,7 +21,7 @@ module dd3_model_rigid_supports
 contains
 
   !> Choose the supports.
-  subroutine choose_supports(x, prescribed, support, bound)
+  subroutine choose_supports(x, prescribed, support, bound, weight)
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
     !> Directions with a support already, `(3, n_node)`.
@@ -30,7 +30,10 @@ contains
     integer, allocatable, intent(out) :: support(:, :)
     !> Nodes that are bound to others and cannot be supported.
     integer, intent(in), optional :: bound(:)
+    !> Factors on the components in the choice, `(3, n_node)`; 1 by default.
+    real(wp), intent(in), optional :: weight(:, :)
 
+    real(wp) :: worth(3, size(x, 2))
     logical :: allowed(size(x, 2))
     type(rigid_motion_t) :: body
     real(wp) :: projector(6, 6), row(6), component, other
@@ -42,9 +45,12 @@ contains
     allocate (support(2, n))
     allowed = .true.
     if (present(bound)) allowed(bound) = .false.
+    worth = 1.0_wp
+    if (present(weight)) worth = weight
     do k = 1, n
-      call find_largest(body, x, allowed, projector, place, component)
-      call find_largest(body, x, allowed .and. any(prescribed, dim=1), projector, near, other)
+      call find_largest(body, x, allowed, worth, projector, place, component)
+      call find_largest(body, x, allowed .and. any(prescribed, dim=1), worth, projector, near, &
+          other)
       if (other >= sufficient*component) place = near
       support(:, k) = place
       row = matmul(projector, body%condition(x(:, place(1)), identity(:, place(2))))
@@ -54,11 +60,13 @@ contains
   end subroutine choose_supports
 
   !> Find the nodal direction with the largest component in the free motions.
-  subroutine find_largest(body, x, allowed, projector, place, component)
+  subroutine find_largest(body, x, allowed, worth, projector, place, component)
     type(rigid_motion_t), intent(in) :: body
     real(wp), intent(in) :: x(:, :)
     !> Nodes to choose from.
     logical, intent(in) :: allowed(:)
+    !> Factors on the components, `(3, n_node)`.
+    real(wp), intent(in) :: worth(:, :)
     !> Projection onto the free motions.
     real(wp), intent(in) :: projector(6, 6)
     !> Node and axis.
@@ -73,7 +81,8 @@ contains
     do node = 1, size(x, 2)
       if (.not. allowed(node)) cycle
       do axis = 1, 3
-        this = norm2(matmul(projector, body%condition(x(:, node), identity(:, axis))))
+        this = worth(axis, node) &
+            *norm2(matmul(projector, body%condition(x(:, node), identity(:, axis))))
         if (this <= component*(1.0_wp + equal)) cycle
         component = this
         place = [node, axis]

@@ -10,7 +10,8 @@ module dd3_report_unload_report
   use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
   use dd3_model_rigid_supports, only : name_of_support
   use dd3_model_state, only : state_t
-  use dd3_model_terms_floating, only : spring_force, spring_stiffness
+  use dd3_model_terms_floating, only : floating_supports, spring_force, &
+      spring_stiffness
   use dd3_model_terms_list, only : external_forces, final_forces, largest_force
   implicit none
   private
@@ -126,18 +127,20 @@ contains
     type(message_list_t), intent(inout) :: notes
 
     real(wp), allocatable :: reaction(:)
+    integer, allocatable :: support(:, :)
     real(wp) :: all_reactions(3, model%n_node), stiffness(3), scale
     integer :: k
 
-    associate (support => model%phase(state%phase)%support)
-      if (size(support, 2) == 0) return
+    associate (phase => model%phase(state%phase))
+      if (size(phase%support, 2) == 0) return
+      support = floating_supports(model, state)
       allocate (reaction(size(support, 2)))
       all_reactions = reactions(model, state)
       stiffness = spring_stiffness(model, state)
       do k = 1, size(support, 2)
         associate (node => support(1, k), axis => support(2, k))
           reaction(k) = all_reactions(axis, node)
-          if (model%phase(state%phase)%floats) reaction(k) = &
+          if (phase%floats) reaction(k) = &
               spring_force(stiffness(axis), state, node, axis)
         end associate
       end do
@@ -145,7 +148,7 @@ contains
       scale = max(negligible_strain*model%least_shear()*model%thickness**2, &
           largest_force(state%term))
       call notes%add_new(merge("W107", "N103", abs(reaction(k)) > notable_reaction*scale), &
-          "phase '"//model%phase(state%phase)%name//"': the largest reaction of the "// &
+          "phase '"//phase%name//"': the largest reaction of the "// &
           "chosen supports is "//to_text(abs(reaction(k)), 3)//" N ("// &
           name_of_support(support(:, k))//")")
     end associate

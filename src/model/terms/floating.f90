@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Springs at the chosen supports of a sheet from which tools are withdrawn, which floats between
-!> them. Rigid supports would take the forces of the forming at single nodes, as the tools do not
-!> leave at the same rate: the springs are soft at first. Along the paths of the tools they are
-!> stiff when these have opened by twice the thickness, so that the sheet does not follow a tool on
-!> which it hangs. Across the paths they are stiff only when all tools have left: until then these
+!> Springs in place of the chosen supports of a sheet from which tools are withdrawn, which floats
+!> between them. Rigid supports would take the forces of the forming at single nodes, as the tools
+!> do not leave at the same rate: the springs are soft at first. Along the paths of the tools they
+!> are stiff when these have opened by twice the thickness, so that the sheet does not follow a tool
+!> on which it hangs. Across the paths they are stiff only when all tools have left: until then these
 !> hold the sheet at another place than that of the start, and a stiff spring would pull at one node
 !> against them. They are as many as the free rigid motions and have no force in the end.
 module dd3_model_terms_floating
@@ -14,14 +14,19 @@ module dd3_model_terms_floating
   use dd3_model_configuration, only : configuration_t
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
+  use dd3_model_rigid_supports, only : choose_supports
   use dd3_model_terms_term, only : term_t
   implicit none
   private
-  public :: floating_t, bending_stiffness, spring_stiffness, spring_force
+  public :: floating_t, bending_stiffness, floating_supports, spring_stiffness, spring_force
 
   !> The term.
   type, extends(term_t) :: floating_t
+    private
+    !> Node and axis of each spring in the running increment, `(2, n)`.
+    integer, allocatable :: support(:, :)
   contains
+    procedure :: begin_increment
     procedure :: add_force
     procedure :: add_stiffness
   end type floating_t
@@ -32,8 +37,44 @@ module dd3_model_terms_floating
   real(wp), parameter :: soft = 0.1_wp, along = 1.0e4_wp, across = 100.0_wp, opened = 2.0_wp
   !> Cosine between a path and an axis from which the axis counts as along it.
   real(wp), parameter :: least_cosine = 0.2_wp
+  !> Least factor on a nodal direction in the choice of the supports; 1 in the plane of the sheet.
+  real(wp), parameter :: across_sheet = 0.05_wp
 
 contains
+
+  !> Choose the supports of the increment.
+  subroutine begin_increment(self, model, committed)
+    class(floating_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    type(configuration_t), intent(in) :: committed
+
+    self%support = floating_supports(model, committed)
+  end subroutine begin_increment
+
+  !> Return node and axis of each spring, `(2, n)`: the supports of the phase when all tools have
+  !> left. Before, a spring takes the force that strips the sheet from a tool on which it hangs: it
+  !> pulls in the plane of the sheet where it can, at a wall, as it would dent a bottom.
+  function floating_supports(model, state) result(support)
+    type(model_t), intent(in) :: model
+    class(configuration_t), intent(in) :: state
+    integer, allocatable :: support(:, :)
+
+    real(wp) :: weight(3, model%n_node)
+    integer :: n
+
+    associate (phase => model%phase(state%phase), x => state%start%x)
+      support = phase%support
+      if (.not. phase%floats .or. state%open) return
+      weight = 1.0_wp
+      do n = 1, model%n_node
+        if (model%fibre_end(n) == 0) cycle
+        associate (fibre => x(:, model%fibre_end(n)) - x(:, n))
+          weight(:, n) = max(across_sheet, sqrt(max(0.0_wp, 1.0_wp - fibre**2/sum(fibre**2))))
+        end associate
+      end do
+      call choose_supports(x, phase%prescribed, support, model%bound_nodes(), weight)
+    end associate
+  end function floating_supports
 
   !> Return the stiffness of the springs along the axes, N/mm.
   pure function spring_stiffness(model, state) result(stiffness)
@@ -102,10 +143,10 @@ contains
     integer :: i
 
     associate (phase => model%phase(state%phase))
-      if (.not. phase%floats) return
+      if (.not. (phase%floats .and. allocated(self%support))) return
       stiffness = spring_stiffness(model, state)
-      do i = 1, size(phase%support, 2)
-        associate (node => phase%support(1, i), axis => phase%support(2, i))
+      do i = 1, size(self%support, 2)
+        associate (node => self%support(1, i), axis => self%support(2, i))
           force(axis, node) = force(axis, node) + spring_force(stiffness(axis), state, node, axis)
         end associate
       end do
@@ -123,10 +164,10 @@ contains
     integer :: k, i
 
     associate (phase => model%phase(state%phase), value => stiffness%value)
-      if (.not. phase%floats) return
+      if (.not. (phase%floats .and. allocated(self%support))) return
       spring = spring_stiffness(model, state)
-      do i = 1, size(phase%support, 2)
-        associate (node => phase%support(1, i), axis => phase%support(2, i))
+      do i = 1, size(self%support, 2)
+        associate (node => self%support(1, i), axis => self%support(2, i))
           if (.not. holds_row(stiffness, node)) cycle
           k = stiffness%diagonal(node)
           value(axis, axis, k) = value(axis, axis, k) + spring(axis)
