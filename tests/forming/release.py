@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 #: []
-"""The release of drawn parts by `unload`, beside tools withdrawn one after another by `move`, with contact and friction.
+"""The release of drawn parts by `unload`, beside tools withdrawn in other orders by `move`, with contact and friction.
 
     release.py --program build/release/dd3imp --work build/release_orders            print the table
     release.py --program build/release/dd3imp --work build/release_orders --write    put it into docs/reports/release.md
@@ -76,11 +76,12 @@ def make_tools(part, folder, program):
     folder.mkdir(parents=True, exist_ok=True)
     source = (INPUTS / part.name).parent
     subprocess.run([sys.executable, source / "step_files.py", folder], check=True, capture_output=True)
-    commands = [["tool", folder / f"{tool}.step", folder / f"{tool}.bez", "--toward", "0", "0", side, "--tolerance", "0.01"]
-                for tool, side in SIDES.items()]
+    commands = [["tool", folder / f"{tool}.step", folder / f"{tool}.bez", "--toward", "0", "0", side, "--tolerance",
+                 "0.01"] for tool, side in SIDES.items()]
     if (source / "tension.csv").is_file():
-        commands.append(["identify", "steel", "--criterion", "hill48", "--r", "0:1.85", "45:1.35", "90:2.20", "--hardening",
-                         "swift", "--curve", source / "tension.csv", "--program", program, "--output", folder / "steel.dat"])
+        commands.append(["identify", "steel", "--criterion", "hill48", "--r", "0:1.85", "45:1.35", "90:2.20",
+                         "--hardening", "swift", "--curve", source / "tension.csv", "--program", program, "--output",
+                         folder / "steel.dat"])
     for words in commands:
         subprocess.run([pathlib.Path(sys.executable).parent / "dd3", *words], check=True, capture_output=True)
 
@@ -122,8 +123,8 @@ def distance_of(points, others, mirror=""):
 
 
 def from_band(distance, orders):
-    """Return the distance of the first order from the band of the others, mm: from the nearest pair A, B of them half of
-    what the ways to A and to B are longer than from A to B."""
+    """Return the distance of the first order from the band of the others, mm: half of what the ways
+    to two of them, A and B, are longer than that from A to B, for the nearest pair."""
     one, *others = orders
     return min((distance[one, a] + distance[one, b] - distance[a, b])/2 for a in others for b in others)
 
@@ -153,7 +154,8 @@ def rows_of(bench, name, part):
     for order, release in made.items():
         first = not rows
         change = distance_of(last(drawn.folder), shapes[order], part.mirror)
-        rows.append([name if first else "", order, f"{change:.3f}", f"{slope(release.folder):.2f}" if part.strip else "",
+        rim = f"{slope(release.folder):.2f}" if part.strip else ""
+        rows.append([name if first else "", order, f"{change:.3f}", rim,
                      *("" if order == other else f"{distance[order, other]:.4f}" for other in list(ORDERS)[:3]),
                      f"{100*from_band(distance, ORDERS)/change:.2f}" if first else "",
                      *effort(release, len(drawn.history))])
@@ -166,8 +168,8 @@ def main():
     bench = Bench(options.program, options.work)
     found = [rows_of(bench, name, part) for name, part in PARTS.items() if not options.only or name in options.only]
     text = table(["part", "release", "change of shape, mm", "rim, degrees", "from `unload`, mm",
-                  "from punch, then holder, mm", "from holder, then punch, mm", "from the band, %", "increments", "iterations",
-                  "warnings"], [row for rows, _ in found for row in rows])
+                  "from punch, then holder, mm", "from holder, then punch, mm", "from the band, %", "increments",
+                  "iterations", "warnings"], [row for rows, _ in found for row in rows])
     print(text)
     if options.write:
         put_table(ROOT / "docs" / "reports" / "release.md", "orders", text, [job for _, job in found])

@@ -5,8 +5,9 @@
 
     symmetric_rail.py --program build/release/dd3imp --work build/symmetric_rail
 
-The input file is input_files/rail/rail.dat with a coarse mesh that is not refined. The supports that the program chooses
-in the springback do not have the symmetry: forces on them that deform the sheet while the tools leave show in the shape.
+The input file is input_files/rail/rail.dat with a coarse mesh that is not refined. The supports that the program
+chooses in the springback do not have the symmetry: forces on them that deform the sheet while the tools leave show in
+the shape.
 """
 import pathlib
 import sys

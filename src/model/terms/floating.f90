@@ -3,9 +3,9 @@
 !> between them. Rigid supports would take the forces of the forming at single nodes, as the tools
 !> do not leave at the same rate: the springs are soft at first. Along the paths of the tools they
 !> are stiff when these have opened by twice the thickness, so that the sheet does not follow a tool
-!> on which it hangs. Across the paths they are stiff only when all tools have left: until then these
-!> hold the sheet at another place than that of the start, and a stiff spring would pull at one node
-!> against them. They are as many as the free rigid motions and have no force in the end.
+!> on which it hangs. Across the paths they are stiff only when all tools have left: until then
+!> these hold the sheet at another place than that of the start, and a stiff spring would pull at
+!> one node against them. They are as many as the free rigid motions and have no force in the end.
 module dd3_model_terms_floating
   use dd3_base_kinds, only : wp
   use dd3_element_kinematics, only : point_volumes
