@@ -12,6 +12,7 @@ from dd3.errors import Problem, run
 ANY = "<file>"  # stands for the words that are no command of a group
 # Name: module and summary. A group has the summary, an example and the table of its own.
 COMMANDS = {
+    "part": ("dd3.part.command", "read a sheet part: thickness, press direction, undercuts, features"),
     "tool": ("dd3.tool", "make tool surfaces from CAD, STL, a mesh or a profile"),
     "import": ("dd3.dyna.command", "import a forming deck of LS-DYNA"),
     "dynain": ("dd3.dynain", "take over a formed sheet of LS-DYNA for *START"),

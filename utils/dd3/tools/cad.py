@@ -134,30 +134,38 @@ def free_edges(gmsh: Any) -> list[int]:
     return [tag for tag in single if gmsh.model.occ.getMass(1, tag) > 1e-9 and not is_seam(gmsh, tag)]
 
 
-def refuse_gaps(gmsh: Any, path: Path, sewn: float | None) -> None:
-    """Refuse free edges that run beside each other: the faces were not joined, or not sewn within `sewn` mm."""
+def find_gaps(gmsh: Any) -> list[tuple[float, int, int]]:
+    """Return the pairs of free edges that run beside each other, with the largest distance of the first one from the
+    second, mm, the widest gap last."""
     single = free_edges(gmsh)
-    if not single:
-        return
     fine = []
     for tag in single:
         low, high = gmsh.model.getParametrizationBounds(1, tag)
         fine.append(np.reshape(gmsh.model.getValue(1, tag, np.linspace(low[0], high[0], 65)), (-1, 3)))
-    worst, where, count = 0.0, (0, 0), 0
+    found = []
     for i, (tag, points) in enumerate(zip(single, fine)):
         limit = min(REACH, gmsh.model.occ.getMass(1, tag) / 4)
         for j, other in enumerate(fine):
             gap = max(to_chords(point, other) for point in points[16:49:16]) if j != i else np.inf
             if gap <= limit:
-                count += 1
-                if gap >= worst:
-                    worst, where = gap, (tag, single[j])
-    if count:
-        faces = [int(gmsh.model.getAdjacencies(1, tag)[0][0]) for tag in where]
-        raise Problem(f"{path}: error: free edges of the CAD up to {worst:.3g} mm apart, the widest between faces "
-                      f"{faces[0]} and {faces[1]}; "
-                      + (f"--sew {up(worst):g} joins them" if worst > (sewn or 0.0)
-                         else "their courses differ, so --sew does not join them; mend the CAD"))
+                found.append((float(gap), tag, single[j]))
+    return sorted(found, key=lambda pair: pair[0])
+
+
+def said_of_gaps(gmsh: Any, gaps: list[tuple[float, int, int]], sewn: float | None) -> str:
+    """Return what is to be said of gaps that are left after the faces were sewn within `sewn` mm."""
+    worst, *edges = gaps[-1]
+    faces = [int(gmsh.model.getAdjacencies(1, tag)[0][0]) for tag in edges]
+    return (f"free edges of the CAD up to {worst:.3g} mm apart, the widest between faces {faces[0]} and {faces[1]}; "
+            + (f"--sew {up(worst):g} joins them" if worst > (sewn or 0.0)
+               else "their courses differ, so --sew does not join them; mend the CAD"))
+
+
+def refuse_gaps(gmsh: Any, path: Path, sewn: float | None) -> None:
+    """Refuse free edges that run beside each other: the faces were not joined, or not sewn within `sewn` mm."""
+    gaps = find_gaps(gmsh)
+    if gaps:
+        raise Problem(f"{path}: error: {said_of_gaps(gmsh, gaps, sewn)}")
 
 
 def is_seam(gmsh: Any, edge: int) -> bool:

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rims of a side of a part: its outer one with notches, and holes."""
+from dataclasses import dataclass
+
+import numpy as np
+
+from dd3.part.shape import Shape, angle_between, unit
+
+# Variation of the radius, relative, up to which a hole is round.
+ROUND = 0.01
+# Angle between the plane of an inner loop and the faces beside it below which the sheet is lanced there, degrees: cut
+# along a line and formed on one side of it.
+LANCED = 20.0
+# Turn of a rim at a node that is a corner, that of a corner at the mouth of a notch, of its inside, and the change of
+# the rim's direction from before to behind it, degrees.
+CORNER, MOUTH, INSIDE, CHANGE = 2.0, 20.0, 80.0, 30.0
+
+
+@dataclass
+class Loop:
+    """A closed rim: nodes in order, with the side on their left; edges; faces of the side beside it; length, mm; vector
+    area, mm2, of the surface that it bounds."""
+
+    nodes: np.ndarray
+    edges: list[int]
+    faces: list[int]
+    length: float
+    area: np.ndarray
+
+
+@dataclass
+class Hole:
+    """An inner loop: what it is, its diameter or its two sizes, mm, and its centre."""
+
+    loop: Loop
+    name: str
+    size: tuple[float, ...]
+    centre: np.ndarray
+
+    @property
+    def words(self) -> str:
+        """Return the hole in words."""
+        return f"{self.name} {' x '.join(f'{value:.4g}' for value in self.size)}"
+
+
+@dataclass
+class Notch:
+    """A notch of the outer rim: width of its mouth and depth, mm, and its place."""
+
+    width: float
+    depth: float
+    centre: np.ndarray
+
+
+def find_loops(shape: Shape, faces: list[int]) -> list[Loop]:
+    """Return the rims of a side, that of the largest area, the outer one, first."""
+    own = shape.of(faces)
+    start, end = shape.triangles[own].ravel(), np.roll(shape.triangles[own], -1, axis=1).ravel()
+    owner, piece = np.repeat(own, 3), shape.piece_of[own].ravel()
+    count = len(shape.nodes)
+    rim = np.flatnonzero(~np.isin(start * count + end, end * count + start))
+    following: dict[int, list[int]] = {}
+    for k in rim.tolist():
+        following.setdefault(int(start[k]), []).append(k)
+    found = []
+    while following:
+        here = next(iter(following))
+        chain = []
+        while here in following:
+            k = following[here].pop()
+            if not following[here]:
+                del following[here]
+            chain.append(k)
+            here = int(end[k])
+        nodes = start[chain]
+        points = shape.nodes[nodes]
+        edges = shape.piece_edge[piece[chain][piece[chain] >= 0]]
+        found.append(Loop(nodes, sorted(set(edges.tolist())), sorted(set(shape.face[owner[chain]].tolist())),
+                          float(np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1).sum()),
+                          np.cross(points - points[0], np.roll(points, -1, axis=0) - points[0]).sum(axis=0) / 2))
+    return sorted(found, key=lambda loop: -np.linalg.norm(loop.area))
+
+
+def hole_of(shape: Shape, loop: Loop) -> Hole:
+    """Return what an inner loop is."""
+    points = shape.nodes[loop.nodes]
+    normal = unit(loop.area)
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2
+    inplane = points - points.mean(axis=0)
+    inplane -= (inplane @ normal)[:, None] * normal
+    radius = np.linalg.norm(inplane - (inplane.max(axis=0) + inplane.min(axis=0)) / 2, axis=1)
+    axes = np.linalg.eigh(inplane.T @ inplane)[1].T[1:]
+    size = sorted((float(np.ptp(inplane @ axis)) for axis in axes), reverse=True)
+    beside = shape.of(loop.faces)
+    near = beside[np.isin(shape.triangles[beside], loop.nodes).any(axis=1)]
+    level = np.abs(shape.normal[near] @ normal)
+    if np.average(level, weights=shape.area[near]) < np.sin(np.radians(LANCED)):
+        return Hole(loop, "lanced", tuple(size), middle)
+    if len(points) > 4 and np.ptp(radius) <= ROUND * radius.mean():
+        return Hole(loop, "round", (2 * float(radius.mean()),), middle)
+    return Hole(loop, "opening", tuple(size), middle)
+
+
+def find_notches(shape: Shape, faces: list[int], loop: Loop) -> list[Notch]:
+    """Return the notches of the outer rim: stretches in which it turns inwards between two corners, and goes on in about
+    its direction behind them."""
+    own = shape.of(faces)
+    corners = shape.nodes[shape.triangles[own]]
+    angle = np.stack([angle_between(corners[:, (k + 1) % 3] - corners[:, k], corners[:, (k + 2) % 3] - corners[:, k])
+                      for k in range(3)], axis=1)
+    total = np.zeros(len(shape.nodes))
+    np.add.at(total, shape.triangles[own], angle)
+    turn = 180.0 - total[loop.nodes]
+    corner = np.flatnonzero(np.abs(turn) > CORNER)
+    found = []
+    for inside in inward_runs(turn[corner]):
+        before, turn_before = mouth(turn[corner], inside, -1)
+        after, turn_after = mouth(turn[corner], inside, 1)
+        whole = turn[corner][inside].sum()
+        if whole > -INSIDE or min(turn_before, turn_after) < MOUTH or abs(turn_before + whole + turn_after) > CHANGE:
+            continue
+        ends = shape.nodes[loop.nodes[corner[[before, after]]]]
+        along = unit(ends[1] - ends[0])
+        away = shape.nodes[loop.nodes[corner[inside]]] - ends[0]
+        found.append(Notch(float(np.linalg.norm(ends[1] - ends[0])),
+                           float(np.linalg.norm(away - (away @ along)[:, None] * along, axis=1).max()), ends.mean(axis=0)))
+    return found
+
+
+def inward_runs(turn: np.ndarray) -> list[np.ndarray]:
+    """Return the runs of corners at which a loop turns inwards one after the other."""
+    inward = turn < 0
+    if inward.all() or not inward.any():
+        return []
+    first = int(np.flatnonzero(~inward)[0])
+    order = np.roll(np.arange(len(turn)), -first)
+    parts = np.split(order, np.flatnonzero(np.diff(inward[order])) + 1)
+    return [part for part in parts if inward[part[0]]]
+
+
+def mouth(turn: np.ndarray, inside: np.ndarray, step: int) -> tuple[int, float]:
+    """Return the corner nearest to a run at which the mouth of a notch begins, in one direction around the loop, and the
+    turn there: of all corners that turn outwards up to half of what the run turns inwards."""
+    most = -turn[inside].sum() / 2 + CHANGE / 2
+    here = int(inside[0] if step < 0 else inside[-1])
+    total, nearest = 0.0, (here + step) % len(turn)
+    for i in range(1, len(turn)):
+        value = turn[(here + step * i) % len(turn)]
+        if value < 0 or total + value > most:
+            break
+        total += value
+    return nearest, float(total)

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Picture of a part with the numbers of its faces, from above and from below its press direction."""
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dd3.errors import Problem
+from dd3.part.rays import Rays
+from dd3.part.reading import Reading
+from dd3.part.shape import unit
+
+MOST_LABELS = 250
+# Triangles of a face that are tried for its number, and its distance from the face over the size of the part.
+TRIED, AHEAD = 8, 0.005
+RIM, BACK, FAULT, EDGE = "#9aa0a6", "#d62728", "#d62728", "#444444"
+# Colours of draft angles from 0 to 90 degrees, and in words.
+WALLS, LEVEL = np.array([0.98, 0.80, 0.36]), np.array([0.45, 0.66, 0.85])
+
+
+def draw(reading: Reading, path: Path) -> None:
+    """Write the picture: faces by their draft, walls yellow and level ones blue, undercut ones red, rims grey; edges of
+    faults thick and red, with their numbers. No display is needed."""
+    import pyvista as pv
+    from vtkmodules.vtkCommonCore import vtkLogger
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
+    pv.OFF_SCREEN = True
+    shape, rays = reading.shape, Rays(reading.shape)
+    up = reading.direction.vector if reading.direction else np.array([0.0, 0.0, 1.0])
+    plotter: Any = pv.Plotter(off_screen=True, shape=(1, 2), window_size=[1800, 900], border=False)
+    cells = np.insert(shape.triangles, 0, 3, axis=1).ravel()
+    mesh = pv.PolyData(shape.nodes, cells)
+    mesh.cell_data["colour"] = colours(reading)
+    side = unit(np.cross(up, [0.35, -1.0, 0.2] if abs(up[0]) < 0.9 else [0.2, -1.0, 0.35]))
+    for column, above in enumerate((1.0, -1.0)):
+        plotter.subplot(0, column)
+        plotter.set_background("white")
+        plotter.add_mesh(mesh, scalars="colour", rgb=True, ambient=0.35)
+        plotter.add_mesh(lines(pv, reading, None), color=EDGE, line_width=1.2)
+        view = unit(above * up + 0.75 * side)
+        label(plotter, reading, rays, view)
+        focus = shape.box.mean(axis=0)
+        plotter.camera_position = [focus + 3 * shape.size * view, focus, up]
+        plotter.enable_parallel_projection()
+        plotter.reset_camera()
+        plotter.camera.zoom(1.2)
+        plotter.add_text("from above" if above > 0 else "from below", font_size=9, color="black")
+    try:
+        plotter.screenshot(str(path))
+    except (OSError, ValueError) as error:
+        raise Problem(f"{path}: {error}") from None
+    finally:
+        plotter.close()
+
+
+def colours(reading: Reading) -> np.ndarray:
+    """Return the colours of the triangles (m, 3), 0 to 255."""
+    from matplotlib.colors import to_rgb
+    shape, direction = reading.shape, reading.direction
+    if not direction:
+        return np.tile(np.uint8(255 * LEVEL), (len(shape.face), 1))
+    draft = np.clip(np.nan_to_num(direction.draft) / 90, 0, 1)[:, None]
+    found = WALLS + draft * (LEVEL - WALLS)
+    found[np.isnan(direction.draft)] = to_rgb(RIM)
+    found[np.isin(shape.face, list(direction.undercut))] = to_rgb(BACK)
+    return np.uint8(255 * found)
+
+
+def lines(pv: Any, reading: Reading, edges: list[int] | None) -> Any:
+    """Return edges, all by default, as lines."""
+    shape = reading.shape
+    pieces = shape.pieces if edges is None else shape.pieces[np.isin(shape.piece_edge, edges)]
+    return pv.PolyData(shape.nodes, lines=np.insert(pieces, 0, 2, axis=1).ravel())
+
+
+def label(plotter: Any, reading: Reading, rays: Rays, view: np.ndarray) -> None:
+    """Add the numbers of the faces that are seen, larger ones first, and faulty edges with their numbers."""
+    import pyvista as pv
+    shape = reading.shape
+    marked = {tag for fault in reading.faults for tag in fault.faces}
+    tags = sorted(shape.tags, key=lambda tag: (tag not in marked, tag in reading.sheet.rims, -shape.areas[tag]))
+    place = {tag: spot for tag in tags[:2 * MOST_LABELS] if (spot := seen_place(reading, rays, tag, view)) is not None}
+    shown = list(place)[:MOST_LABELS]
+    style = {"font_size": 13, "bold": False, "show_points": False, "always_visible": True, "margin": 1}
+    if shown:
+        plotter.add_point_labels(np.array([place[tag] for tag in shown]), [str(tag) for tag in shown], shape_color="white",
+                                 shape_opacity=0.6, **style)
+    edges = sorted({edge for fault in reading.faults for edge in fault.edges})
+    if edges:
+        plotter.add_mesh(lines(pv, reading, edges), color=FAULT, line_width=6)
+        middles = [shape.nodes[shape.pieces[shape.piece_edge == edge].ravel()].mean(axis=0) for edge in edges]
+        plotter.add_point_labels(np.array(middles), [f"edge {edge}" for edge in edges], shape_color="#ffd9d9", **style)
+
+
+def seen_place(reading: Reading, rays: Rays, tag: int, view: np.ndarray) -> np.ndarray | None:
+    """Return a place for the number of a face, near the middle of what is seen of it, None if nothing is."""
+    shape = reading.shape
+    own = shape.cells[tag]
+    if shape.closed:
+        own = own[shape.normal[own] @ view > 0.05]
+    own = own[np.argsort(np.linalg.norm(shape.place[own] - shape.place[own].mean(axis=0), axis=1))][:TRIED] if len(own) else own
+    ahead = AHEAD * shape.size
+    seen = rays.hits(own, np.tile(view, (len(own), 1)), ahead).triangle < 0
+    return shape.place[own[seen][0]] + ahead * view if seen.any() else None

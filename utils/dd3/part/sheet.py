@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a part is: a sheet with its thickness, its two sides and its rims, a surface, or a block."""
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from dd3.part.rays import Rays
+from dd3.part.shape import Shape
+from dd3.tools.joints import signs
+
+# Rays of the thickness, and the fewest of a face.
+RAYS, FEWEST = 2000, 6
+# Cosine between the normals of two points that face each other on both sides of a sheet; difference of thicknesses
+# that count as equal, of a face of a sheet, and of all.
+OPPOSITE, EQUAL, MEMBER = -0.95, 0.02, 0.1
+# Distance over the size of the part behind which a ray begins.
+LEAST = 1e-4
+# Least fraction of the area at the thickness, and largest thickness over the square root of a side's area, of a sheet.
+SHEET, THICKEST = 0.6, 0.3
+# Angle between all normals of a side up to which the part is flat, degrees.
+FLAT = 0.5
+# Diagonal and thickness below which, mm, the unit may be another.
+TINY, THIN = 5.0, 0.1
+
+
+@dataclass
+class Sheet:
+    """`kind` is sheet, surface or block; thickness, mm, and the fraction of the area, rims left out, that has it; the
+    faces of both sides, of a surface or a block in the first, and of the rims."""
+
+    kind: str
+    thickness: float | None = None
+    fraction: float = 0.0
+    sides: tuple[list[int], list[int]] = ([], [])
+    rims: list[int] = field(default_factory=list)
+
+
+def samples(shape: Shape, faces: Iterable[int], count: int = RAYS) -> tuple[np.ndarray, np.ndarray]:
+    """Return triangles of faces, about `count` spread by area and a few of each, and the areas they stand for."""
+    total = sum(shape.areas[tag] for tag in faces)
+    chosen, weights = [], []
+    for tag in faces:
+        own = shape.cells[tag]
+        wanted = min(len(own), max(FEWEST, int(np.ceil(count * shape.areas[tag] / total))))
+        part = own[np.unique(np.linspace(0, len(own) - 1, wanted).astype(int))]
+        chosen.append(part)
+        weights.append(shape.area[part] * shape.areas[tag] / max(shape.area[part].sum(), 1e-300))
+    return np.concatenate(chosen), np.concatenate(weights)
+
+
+def read_sheet(shape: Shape, rays: Rays) -> Sheet:
+    """Return what a part is."""
+    if not shape.closed:
+        return Sheet("surface", sides=(shape.tags, []))
+    chosen, weight = samples(shape, shape.tags)
+    hits = rays.hits(chosen, -shape.normal[chosen], LEAST * shape.size)
+    distance = hits.distance
+    faces = (shape.normal[chosen] * hits.normal).sum(axis=1) < OPPOSITE
+    thickness = most_common(distance[faces], weight[faces])
+    at = faces & (np.abs(distance - thickness) <= MEMBER * thickness)
+    sides = mostly(shape, chosen, weight, at)
+    area = sum(shape.areas[tag] for tag in sides)
+    if area < SHEET * sum(shape.areas.values()) or thickness > THICKEST * np.sqrt(area / 2):
+        return Sheet("block", sides=(shape.tags, []))
+    equal = faces & (np.abs(distance - thickness) <= EQUAL * thickness)
+    of_sides = np.isin(shape.face[chosen], sides)
+    first, second = two_sides(shape, sides, shape.face[chosen[at]], shape.face[hits.triangle[at]])
+    return Sheet("sheet", thickness, float(weight[equal & of_sides].sum() / weight[of_sides].sum()), (first, second),
+                 [tag for tag in shape.tags if tag not in sides])
+
+
+def mostly(shape: Shape, chosen: np.ndarray, weight: np.ndarray, true: np.ndarray) -> list[int]:
+    """Return the faces of which more than half of the area, by its samples, has a property."""
+    face, place = np.unique(shape.face[chosen], return_inverse=True)
+    having = np.bincount(place, weight * true) > 0.5 * np.bincount(place, weight)
+    return [int(tag) for tag in face[having]]
+
+
+def most_common(values: np.ndarray, weights: np.ndarray) -> float:
+    """Return the median of the values within EQUAL of each other that have the largest weight, inf without values."""
+    order = np.argsort(values)
+    values, total = values[order], np.concatenate([[0.0], np.cumsum(weights[order])])
+    if not len(values):
+        return np.inf
+    last = np.searchsorted(values, values * (1 + EQUAL), side="right")
+    first = int((total[last] - total[:-1]).argmax())
+    half = (total[first] + total[last[first]]) / 2
+    return float(values[max(int(np.searchsorted(total, half)) - 1, 0)])
+
+
+def two_sides(shape: Shape, faces: list[int], here: np.ndarray, there: np.ndarray) -> tuple[list[int], list[int]]:
+    """Return the faces of both sides of a sheet: neighbours are on the same side, faces that face each other, `here` and
+    `there`, on different ones."""
+    place = {tag: i for i, tag in enumerate(faces)}
+    same = np.array([(place[a], place[b]) for a in faces for b in shape.neighbours[a] if b in place and a < b],
+                    int).reshape(-1, 2)
+    pairs = {(min(a, b), max(a, b)) for a, b in zip(here.tolist(), there.tolist()) if a in place and b in place and a != b}
+    across = np.array([(place[a], place[b]) for a, b in pairs], int).reshape(-1, 2)
+    joined = np.concatenate([same, across])
+    sign, _, _ = signs(len(faces), joined[:, 0], joined[:, 1], np.arange(len(joined)) < len(same))
+    return ([tag for tag, s in zip(faces, sign) if s > 0], [tag for tag, s in zip(faces, sign) if s < 0])
+
+
+def is_flat(shape: Shape, sheet: Sheet) -> bool:
+    """Tell whether nothing is formed: a sheet or surface with one normal."""
+    chosen = shape.of(sheet.sides[0])
+    mean = shape.normal[chosen[shape.area[chosen].argmax()]]
+    return sheet.kind != "block" and bool(((shape.normal[chosen] @ mean) > np.cos(np.radians(FLAT))).all())

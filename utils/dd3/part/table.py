@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Tables of the reading of a part: a short one for the screen, and one of all faces."""
+from collections import Counter
+
+import numpy as np
+
+from dd3.part.directions import Direction
+from dd3.part.features import draft_range, least_radius
+from dd3.part.reading import Reading
+from dd3.tools.faces import spans
+
+MOST = 6  # items in a line
+
+
+def summary(reading: Reading) -> list[str]:
+    """Return the lines of the reading."""
+    shape, sheet = reading.shape, reading.sheet
+    rows = [("unit", "none stated, taken as mm" if reading.unit == "none" else
+             "mm" if reading.unit == "mm" else f"{reading.unit}, converted to mm"),
+            ("box", ", ".join(f"{name} {a:.4g} to {b:.4g}" for name, a, b in zip("xyz", *rounded(shape.box, shape.size))) + " mm"),
+            ("kind", kind_of(reading)),
+            ("faces", f"{len(shape.tags)}" + (f": {len(sheet.sides[0])} and {len(sheet.sides[1])} of the sides, "
+                                              f"{len(sheet.rims)} of rims" if sheet.kind == "sheet" else ""))]
+    rows += [("part", f"{number} '{name}': faces {spans(list(faces))}") for number, (name, faces)
+             in enumerate(reading.parts, 1) if len(reading.parts) > 1]
+    if reading.direction:
+        rows.append(("direction", direction_line(reading.direction)))
+        rows += [("", direction_line(one)) for one in reading.directions if one is not reading.direction
+                 and sheet.kind != "block" and one.projected > 0.03]
+    rows += role_rows(reading)
+    if reading.bends:
+        rows.append(("bends", f"{len(reading.bends)}, along straight lines between flat faces: bent or flanged, "
+                     "not drawn; "
+                     + some([f"{bend.angle:.3g} degrees" for bend in reading.bends])))
+    if reading.direction and sheet.kind != "block":
+        kinds = Counter(hole.words for hole in reading.holes)
+        rows += [("holes", f"{len(reading.holes)}" + (": " + some([f"{count} {words} mm" for words, count in kinds.items()])
+                                                      if kinds else "")),
+                 ("notches", f"{len(reading.notches)}" + (": " + some([f"{notch.width:.3g} wide, {notch.depth:.3g} deep"
+                                                                       for notch in reading.notches])
+                                                         if reading.notches else ""))]
+    if reading.direction:
+        rows.append(("radii", f"inside {radius_words(reading.inner_radius)}, outside {radius_words(reading.outer_radius)}"))
+        rows.append(("symmetry", ", ".join(plane_words(*plane, shape.size) for plane in reading.symmetry) or "none"))
+    rows += [("", note) for note in reading.notes]
+    rows.append(("read in", f"{reading.seconds:.2g} s"))
+    return [f"  {title:<10} {text}" for title, text in rows]
+
+
+def kind_of(reading: Reading) -> str:
+    """Return what the part is in words."""
+    sheet = reading.sheet
+    shell = "closed shell without volume, " if reading.shape.closed and not reading.solid else ""
+    if sheet.kind == "sheet":
+        flat = "flat " if reading.flat else ""
+        return f"{shell}{flat}sheet of {sheet.thickness:.4g} mm ({100 * sheet.fraction:.0f} % of its sides)"
+    if sheet.kind == "surface":
+        return "surface, without a thickness"
+    return f"{shell}block: no two sides at one distance"
+
+
+def direction_line(one: Direction) -> str:
+    """Return a direction in words."""
+    text = f"from {one.words}: "
+    if one.undercut:
+        named = spans(list(one.undercut))
+        text += f"undercut {100 * one.fraction:.2g} %, faces {named if len(named) < 40 else named[:36] + ' ...'}"
+    else:
+        text += f"no undercut, least draft {one.least + 0.0:.3g} degrees" if one.free else "judged as a tool of its own"
+    return f"{text}, depth {one.depth:.4g} mm ({one.name})"
+
+
+def role_rows(reading: Reading) -> list[tuple[str, str]]:
+    """Return the faces of the upper side by their roles."""
+    rows = []
+    for name in ("floor", "step", "island", "wall", "corner", "bottom radius", "shoulder", "flange"):
+        tags = [tag for tag, role in reading.roles.items() if role.name == name]
+        if tags:
+            radii = sorted({round(abs(reading.roles[tag].radius), 3) for tag in tags
+                            if np.isfinite(reading.roles[tag].radius)})
+            least = min(reading.roles[tag].draft[0] for tag in tags)
+            extra = f", draft from {least + 0.0:.3g} degrees" if name == "wall" else \
+                f", radius {some([f'{radius:.4g}' for radius in radii])} mm" if "radius" in name or name in (
+                    "shoulder", "corner") else ""
+            rows.append((name.replace("bottom radius", "radius"), f"faces {spans(tags)}{extra}"))
+    return rows
+
+
+def some(words: list[str]) -> str:
+    """Return the first of some words."""
+    return ", ".join(words[:MOST]) + (f" and {len(words) - MOST} more" if len(words) > MOST else "")
+
+
+def radius_words(radius: tuple[float, int]) -> str:
+    """Return a least radius in words."""
+    value, where = radius
+    if not np.isfinite(value):
+        return "none"
+    return f"{value:.4g} mm (face {where})" if value else f"sharp (edge {where})"
+
+
+def rounded(values: np.ndarray, size: float) -> np.ndarray:
+    """Return lengths without the rounding errors of the CAD."""
+    return np.round(values, int(np.ceil(6 - np.log10(size)))) + 0.0
+
+
+def plane_words(normal: np.ndarray, distance: float, size: float) -> str:
+    """Return a plane in words."""
+    for axis, name in enumerate("xyz"):
+        if abs(normal[axis]) > 1 - 1e-9:
+            return f"{name} = {rounded(np.array(distance * np.sign(normal[axis])), size):.4g}"
+    return "across " + " ".join(f"{value:.3g}" for value in rounded(normal, 1.0))
+
+
+def face_rows(reading: Reading) -> list[str]:
+    """Return a line for each face: kind of surface, side, role, area, least radius, least and largest draft."""
+    shape, sheet, direction = reading.shape, reading.sheet, reading.direction
+    lines = ["face  surface            side   role           area, mm2  radius, mm  draft, degrees"]
+    hidden = direction.undercut if direction else {}
+    for tag in shape.tags:
+        side = "rim" if tag in sheet.rims else "" if not direction else "upper" if tag in direction.upper else "lower"
+        role = reading.roles[tag].name if tag in reading.roles else ""
+        radius = least_radius(shape, tag)
+        angles = ""
+        if direction and tag not in sheet.rims:
+            least, largest = rounded(np.array(draft_range(shape, direction, tag)), 1.0)
+            angles = f"{least:.3g} to {largest:.3g}"
+        lines.append(f"{tag:<5d} {shape.kinds[tag][:18]:<18s} {side:<6s} {role:<14s} {shape.areas[tag]:<10.5g} "
+                     f"{'flat' if np.isinf(radius) else f'{radius:.4g}':<11s} {angles}"
+                     + (" undercut" if tag in hidden else ""))
+    return lines
+
+
+def edge_rows(reading: Reading) -> list[str]:
+    """Return a line for each sharp edge of the sides: faces, length, angle."""
+    sides = set(reading.sheet.sides[0] + reading.sheet.sides[1])
+    lines = [f"{number:<5d} {spans(edge.faces):<12s} {edge.length:<10.5g} {edge.angle:.3g}"
+             for number, edge in reading.shape.edges.items() if edge.angle and set(edge.faces) <= sides]
+    return ["edge  faces        length, mm angle, degrees (convex positive)", *lines] if lines else []
