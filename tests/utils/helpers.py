@@ -9,10 +9,11 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from dd3 import tool
 from dd3.command import main
 from dd3.errors import run
+from dd3.part import command as part
 from dd3.tables import read_table, tools_in
-from dd3.tool import convert
 
 ROOT = Path(__file__).resolve().parents[2]
 UTILS = ROOT / "utils"
@@ -24,8 +25,8 @@ def call(*words, expect=0):
     with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
         try:
             first, *others = map(str, words or ("",))
-            if first == "tool":  # in this process
-                run(lambda: convert(others))
+            if first in ("tool", "part"):  # in this process
+                run(lambda: {"tool": tool, "part": part}[first].convert(others))
             else:
                 main([first, *others] if first else [])
         except SystemExit as stop:

@@ -414,7 +414,7 @@ PARTS = {
     "lipped_channel": Expected(lipped_channel, bent=True, symmetry=2, radius=2.0, toward=None),
     "bottle": Expected(bottle, symmetry=2, radius=4.0, toward=None),
     "hemmed_pan": Expected(hemmed_pan, symmetry=2, radius=2.0, toward=None),
-    "tube": Expected(tube, thickness=2.0, toward=None),
+    "tube": Expected(tube, thickness=2.0, toward=None, holes=1, symmetry=2),
     "two_angles": Expected(two_angles, kind="several", thickness=None, toward=None),
     "milled": Expected(milled, kind="block", thickness=None, symmetry=2),
     "plate": Expected(plate, kind="flat", thickness=2.0, holes=1, symmetry=2),

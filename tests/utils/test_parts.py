@@ -6,7 +6,6 @@ import pytest
 from helpers import call
 from part_set import PARTS, write
 
-from dd3.errors import Problem
 from dd3.gmsh_session import session
 from dd3.part.reading import Request, read_part
 from dd3.part.shape import angle_between
@@ -59,3 +58,50 @@ def test_set(folder, name):
     assert len(reading.symmetry) == part.symmetry
     if part.radius is not None:
         assert abs(reading.inner_radius[0] - part.radius) < 1e-3 * max(part.radius, 1)
+
+
+def test_command(folder, tmp_path):
+    """Check the table and the picture of the command, also of a part that cannot be drawn, and its messages."""
+    said = call("part", folder / "hat.step", tmp_path / "hat")
+    assert "sheet of 1.2 mm" in said and "from +z: no undercut, least draft 10 degrees" in said, said
+    assert (tmp_path / "hat" / "part.png").stat().st_size > 20000
+    rows = (tmp_path / "hat" / "part.txt").read_text().splitlines()
+    assert sum(" upper " in row for row in rows) == 9 and any("flange" in row for row in rows)
+    said = call("part", folder / "lipped_channel.step", tmp_path / "lipped", expect=2)
+    assert "not in one stroke from any direction; from +z they are" in said and "bent along 4 straight lines" in said, said
+    assert (tmp_path / "lipped" / "part.png").exists()
+    said = call("part", folder / "leaning_tray.step", tmp_path / "leaning", "--toward", 0, 0, 1, expect=2)
+    assert "undercut at faces" in said and "from 0 0.1822 0.9833 there is none" in said, said
+    said = call("part", folder / "tray.step", tmp_path / "tray", "--thickness", 0.8)
+    assert "the sheet of the file is 1 mm thick, --thickness 0.8 was given" in said, said
+    said = call("part", folder / "unitless_inch_tray.brep", tmp_path / "inch")
+    assert "--scale 25.4" in said and "0.914 mm thick" in said, said
+    said = call("part", folder / "two_angles.step", tmp_path / "two", "--part", 2)
+    assert "sheet of 1 mm" in said, said
+
+
+def test_gaps(tmp_path):
+    """Check that faces that are not joined are refused, with their edges in the picture."""
+    import gmsh
+    gmsh.initialize()
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.model.occ.addRectangle(0, 0, 0, 40, 30)
+    gmsh.model.occ.addRectangle(40.1, 0, 0, 40, 30)
+    gmsh.model.occ.synchronize()
+    gmsh.write(str(tmp_path / "gap.step"))
+    gmsh.finalize()
+    said = call("part", tmp_path / "gap.step", tmp_path / "gap", expect=2)
+    assert "free edges of the CAD up to 0.1 mm apart" in said and "--sew" in said, said
+    assert (tmp_path / "gap" / "part.png").exists()
+    assert "no such file" in call("part", "none.step", expect=2)
+    (tmp_path / "damaged.step").write_text("ISO-10303-21;\n")
+    assert "error" in call("part", "damaged.step", expect=2)
+
+
+def test_units():
+    """Check the unit of IGES files."""
+    text = "1H,,1H;,4HPART,6Hp.igs ,3HCAD,1H1,32,38,6,308,15,4HPART,1.0,1,4HINCH,1,0.01;"
+    lines = [text[k:k + 72].ljust(72) + f"G{k // 72 + 1:7d}" for k in range(0, len(text), 72)]
+    assert unit_of_iges(lines) == "inch"
+    assert unit_of_iges([line.replace(",1,4HINCH", ",2,2HMM  ") for line in lines]) == "mm"
+    assert unit_of_iges([]) == "none"

@@ -87,7 +87,7 @@ def level_name(shape: Shape, roles: dict[int, Role], group: set[int], outer: Loo
 
 def inner_and_outer_radius(shape: Shape, sides: tuple[list[int], list[int]]) -> tuple[tuple[float, int], tuple[float, int]]:
     """Return the least radius inside the bends of both sides and that outside, mm, 0 for a sharp edge, each with its
-    face or edge, inf and 0 without."""
+    face or edge, inf and 0 without; the same for both if one of the sides has no faces."""
     found = [(np.inf, 0), (np.inf, 0)]
     for side in sides:
         for tag in side:
@@ -98,4 +98,4 @@ def inner_and_outer_radius(shape: Shape, sides: tuple[list[int], list[int]]) -> 
             if edge.angle and len(edge.faces) == 2 and set(edge.faces) <= set(side):
                 where = int(edge.angle > 0)
                 found[where] = min(found[where], (0.0, number))
-    return found[0], found[1]
+    return (found[0], found[1]) if all(sides) else (min(found), min(found))

@@ -8,9 +8,11 @@ from dd3.part.shape import Shape, angle_between, unit
 
 # Variation of the radius, relative, up to which a hole is round.
 ROUND = 0.01
-# Angle between the plane of an inner loop and the faces beside it below which the sheet is lanced there, degrees: cut
-# along a line and formed on one side of it.
+# Angle between the plane of an inner loop and the normals of the faces beside it below which the sheet stands across the
+# loop, degrees: it is lanced there, cut along a line and formed on one side of it, or has a collar.
 LANCED = 20.0
+# Mean sign of the normals beside such a loop, away from its middle, above which it ends a wall around it.
+COLLAR = 0.8
 # Turn of a rim at a node that is a corner, that of a corner at the mouth of a notch, of its inside, and the change of
 # the rim's direction from before to behind it, degrees.
 CORNER, MOUTH, INSIDE, CHANGE = 2.0, 20.0, 80.0, 30.0
@@ -95,7 +97,9 @@ def hole_of(shape: Shape, loop: Loop) -> Hole:
     near = beside[np.isin(shape.triangles[beside], loop.nodes).any(axis=1)]
     level = np.abs(shape.normal[near] @ normal)
     if np.average(level, weights=shape.area[near]) < np.sin(np.radians(LANCED)):
-        return Hole(loop, "lanced", tuple(size), middle)
+        outwards = np.sign(((shape.place[near] - middle) * shape.normal[near]).sum(axis=1))
+        collar = abs(np.average(outwards, weights=shape.area[near])) > COLLAR
+        return Hole(loop, "collar" if collar else "lanced", tuple(size), middle)
     if len(points) > 4 and np.ptp(radius) <= ROUND * radius.mean():
         return Hole(loop, "round", (2 * float(radius.mean()),), middle)
     return Hole(loop, "opening", tuple(size), middle)

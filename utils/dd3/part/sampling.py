@@ -88,11 +88,7 @@ def on_cad(gmsh: Any, nodes: np.ndarray, triangles: np.ndarray, face: np.ndarray
             corner[chosen] = normal[chosen][:, None]
             continue
         table = parameters_of(gmsh, tag, len(nodes))[triangles[chosen]]
-        unknown = np.isnan(table).any(axis=(1, 2))
-        uv = table.mean(axis=1)
-        if unknown.any():
-            middle = nodes[triangles[chosen[unknown]]].mean(axis=1)
-            uv[unknown] = np.reshape(gmsh.model.getParametrization(2, tag, middle.ravel()), (-1, 2))
+        uv = middle_parameters(gmsh, tag, table, nodes[triangles[chosen]])
         flat = uv.ravel()
         place[chosen] = np.reshape(gmsh.model.getValue(2, tag, flat), (-1, 3))
         normal[chosen] = np.reshape(gmsh.model.getNormal(tag, flat), (-1, 3))
@@ -104,6 +100,21 @@ def on_cad(gmsh: Any, nodes: np.ndarray, triangles: np.ndarray, face: np.ndarray
         known = np.where(np.isnan(table), uv[:, None], table)
         corner[chosen] = np.reshape(gmsh.model.getNormal(tag, known.ravel()), (-1, 3, 3))
     return corner, place, unit(normal), curvature
+
+
+def middle_parameters(gmsh: Any, tag: int, table: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """Return the parameters of a point of each triangle (m, 2): the mean of those of its corners (m, 3, 2), or where these
+    are unknown, or on both sides of a seam, those of the point of the CAD that is nearest to its middle."""
+    uv, middle = table.mean(axis=1), corners.mean(axis=1)
+    known = ~np.isnan(uv).any(axis=1)
+    place = np.full_like(middle, np.inf)
+    if known.any():
+        place[known] = np.reshape(gmsh.model.getValue(2, tag, uv[known].ravel()), (-1, 3))
+    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+    astray = np.linalg.norm(place - middle, axis=1) > longest / 2
+    if astray.any():
+        uv[astray] = np.reshape(gmsh.model.getParametrization(2, tag, middle[astray].ravel()), (-1, 2))
+    return uv
 
 
 def edges_of(gmsh: Any, tags: list[int], count: int) -> tuple[dict[int, Edge], np.ndarray, np.ndarray]:

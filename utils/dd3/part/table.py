@@ -40,7 +40,9 @@ def summary(reading: Reading) -> list[str]:
                                                                        for notch in reading.notches])
                                                          if reading.notches else ""))]
     if reading.direction:
-        rows.append(("radii", f"inside {radius_words(reading.inner_radius)}, outside {radius_words(reading.outer_radius)}"))
+        rows.append(("radii", f"least inside {radius_words(reading.inner_radius)}, outside "
+                     f"{radius_words(reading.outer_radius)}" if sheet.kind == "sheet" else
+                     f"least {radius_words(reading.inner_radius)}"))
         rows.append(("symmetry", ", ".join(plane_words(*plane, shape.size) for plane in reading.symmetry) or "none"))
     rows += [("", note) for note in reading.notes]
     rows.append(("read in", f"{reading.seconds:.2g} s"))
@@ -50,6 +52,8 @@ def summary(reading: Reading) -> list[str]:
 def kind_of(reading: Reading) -> str:
     """Return what the part is in words."""
     sheet = reading.sheet
+    if not reading.direction:
+        return f"{len(reading.parts)} parts"
     shell = "closed shell without volume, " if reading.shape.closed and not reading.solid else ""
     if sheet.kind == "sheet":
         flat = "flat " if reading.flat else ""
@@ -82,8 +86,13 @@ def role_rows(reading: Reading) -> list[tuple[str, str]]:
             extra = f", draft from {least + 0.0:.3g} degrees" if name == "wall" else \
                 f", radius {some([f'{radius:.4g}' for radius in radii])} mm" if "radius" in name or name in (
                     "shoulder", "corner") else ""
-            rows.append((name.replace("bottom radius", "radius"), f"faces {spans(tags)}{extra}"))
+            rows.append((name.replace("bottom radius", "radius"), f"{faces_words(tags)}{extra}"))
     return rows
+
+
+def faces_words(tags: list[int]) -> str:
+    """Return numbers of faces in words."""
+    return f"{'face' if len(tags) == 1 else 'faces'} {spans(tags)}"
 
 
 def some(words: list[str]) -> str:
