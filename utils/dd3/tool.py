@@ -5,7 +5,7 @@
     dd3 tool die.stl die.bez --toward 0 0 1              STL, .msh, .inp, LS-DYNA .k, VTK
     dd3 tool die.shape die.bez                           a profile of lines and arcs, a box with rounded corners
     dd3 tool punch.step die.bez --toward 0 0 -1 --offset 1.1 --turn     a die from a punch
-    dd3 tool part.step folder --thickness 0.8            punch, die, holder and an input file of a part
+    dd3 tool part.step folder                            punch, die, holder and an input file of a part
 
 CAD faces become quadrilateral patches whose nodes lie on the CAD, finer until the measured distance is below
 --tolerance. Facets become curved patches (Nagata) with normals estimated at their nodes; their distance is an
@@ -24,6 +24,8 @@ import numpy as np
 from dd3.command import new_parser
 from dd3.errors import Problem, run
 from dd3.gmsh_session import session
+from dd3.part import setup, table
+from dd3.part.command import write_reading
 from dd3.progress import Progress
 from dd3.tools import cad, facets, mend, moved, picture, report, set_deck, sides, tool_set
 from dd3.tools.cad import SUFFIXES as CAD
@@ -174,10 +176,11 @@ def command_line() -> argparse.ArgumentParser:
     parser = new_parser("tool", __doc__)
     parser.add_argument("source", type=Path, help="CAD, mesh or shape file")
     parser.add_argument("target", type=Path, nargs="?",
-                        help=".bez file to write, or with --thickness a folder; without it there is a report only")
+                        help=".bez file to write, or of a part the folder of its tools; without it there is a report "
+                             "only")
     parser.add_argument("--toward", type=float, nargs=3, metavar=("X", "Y", "Z"),
                         help="direction from the tool to the sheet: chooses the side of its normals; faces that look "
-                             "the other way are left out")
+                             "the other way are left out. Of a part: from the part to the punch")
     parser.add_argument("--scale", type=float, default=1.0, help="factor on the coordinates, 1000 for metres")
     parser.add_argument("--rotate", type=float, nargs=4, action="append", default=[],
                         metavar=("X", "Y", "Z", "DEGREES"),
@@ -200,7 +203,7 @@ def command_line() -> argparse.ArgumentParser:
     parser.add_argument("--picture", type=Path, metavar="PNG",
                         help="draw the patches with their normals and the numbers of the CAD's faces")
     whole = parser.add_argument_group("punch, die and holder of a part of CAD, and an input file that draws it")
-    whole.add_argument("--thickness", type=float, metavar="mm", help="of the sheet: makes the tools")
+    whole.add_argument("--thickness", type=float, metavar="mm", help="of the sheet (that of the part)")
     whole.add_argument("--clearance", type=float, metavar="mm",
                        help=f"of punch and die beyond the thickness ({tool_set.CLEARANCE:g} thicknesses)")
     whole.add_argument("--shoulder", type=float, metavar="mm",
@@ -222,7 +225,10 @@ def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
         raise Problem(f"{options.source}: not a file")
     if not options.source.stat().st_size:
         raise Problem(f"{options.source}: the file is empty")
-    if options.target and not options.thickness and options.target.suffix != ".bez":
+    options.kind, options.reader = reader_of(options.source)
+    of_part = options.kind == "cad" and options.target is not None and not options.target.suffix
+    options.whole = bool(options.thickness) or of_part
+    if options.target and not options.whole and options.target.suffix != ".bez":
         raise Problem(f"{options.target}: the name of a tool surface ends in .bez")
     if options.toward and not np.any(options.toward):
         parser.error("--toward takes a direction")
@@ -231,32 +237,38 @@ def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
             parser.error(f"--{name} takes a positive number")
     if any(not np.any(axis) for *axis, _ in options.rotate):
         parser.error("--rotate takes an axis and an angle")
-    options.kind, options.reader = reader_of(options.source)
     for name in ("thickness", "faces", "radius"):
         if getattr(options, name) and options.kind != "cad":
             parser.error(f"--{name} takes CAD: {' '.join(CAD)}")
     if options.smooth and not options.faces:
         parser.error("--smooth goes with --faces")
     for name in ("clearance", "shoulder", "flange", "side", "material"):
-        if getattr(options, name) is not None and not options.thickness:
-            parser.error(f"--{name} goes with --thickness")
-    options.radius = options.radius or options.thickness
+        if getattr(options, name) is not None and not options.whole:
+            parser.error(f"--{name} goes with a folder, or --thickness")
     options.side = options.side or "punch"
-    if options.thickness:
-        settle_set(parser, options)
+    options.taken = None
+    if options.whole:
+        check_set(parser, options)
     options.tolerance = options.tolerance or TOLERANCE[options.kind]
     return options
 
 
-def settle_set(parser: argparse.ArgumentParser, options: argparse.Namespace) -> None:
-    """Check the options of a set of tools, and set those that were not given."""
-    for name in ("toward", "offset", "turn"):
+def check_set(parser: argparse.ArgumentParser, options: argparse.Namespace) -> None:
+    """Check the options of a set of tools."""
+    for name in ("offset", "turn"):
         if getattr(options, name):
-            parser.error(f"--{name} is for one tool; with --thickness the punch moves along -z, see --rotate")
+            parser.error(f"--{name} is for one tool")
+    if options.toward and options.rotate:
+        parser.error("--toward and --rotate: of a part either of them gives the direction of the punch")
     if options.target and options.target.suffix:
         raise Problem(f"{options.target}: with --thickness a folder of punch, die, holder and {DRAW}")
     if options.clearance is not None and not 0 <= options.clearance < np.inf:
         parser.error("--clearance takes a number that is not negative")
+
+
+def settle_set(options: argparse.Namespace) -> None:
+    """Set the sizes of a set of tools that were not given."""
+    options.radius = options.radius or options.thickness
     for name, factor in (("clearance", tool_set.CLEARANCE), ("shoulder", tool_set.SHOULDER),
                          ("flange", tool_set.FLANGE)):
         if getattr(options, name) is None:
@@ -282,7 +294,7 @@ def convert(words: Sequence[str]) -> None:
     """Read, judge, write, report."""
     options = arguments(words)
     command = f"dd3 tool {shlex.join(words)}"
-    if options.thickness:
+    if options.whole:
         reports = make_set(options, command)
     else:
         surface, joints, result = made(options)
@@ -308,15 +320,22 @@ def say(title: str, source: Path, result: report.Report) -> None:
 
 
 def make_set(options: argparse.Namespace, command: str) -> dict[str, report.Report]:
-    """Write punch, die, holder and the input file of a part; return the reports by the names of the files. Nothing is
-    written if one has errors."""
+    """Read a part, write punch, die, holder and the input file; return the reports by the names of the files. No tools
+    are made of a part that cannot be drawn, and none is written if one has errors."""
     material = set_deck.material_in(options.material)
+    reading = setup.read_for_tools(options)
+    if options.target:
+        write_reading(reading, options.target)
+    reports = {str(options.source): report.Report(table.short(reading), reading.warnings,
+                                                  [fault.text for fault in reading.faults])}
+    if reading.faults:
+        return reports
+    settle_set(options)
     progress = Progress(options.source.name)
     with session() as gmsh:
         tools = tool_set.made(gmsh, options, progress)
     progress.end()
     folder = options.target or Path()
-    reports = {}
     for name, surface in tools.surfaces.items():
         result, joints = report.judge(surface, options, 0)
         reports[str(folder / f"{name}.bez")] = result

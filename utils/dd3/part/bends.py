@@ -29,18 +29,20 @@ class Bend:
 def find_bends(shape: Shape, faces: list[int]) -> list[Bend]:
     """Return the bends of a side whose faces are flat, or bent along straight lines between flat ones; none if it is
     formed in another way."""
-    flat, bent = [], []
+    flat: list[int] = []
+    bent: list[int] = []
     for tag in faces:
         curvature = np.abs(shape.curvature[shape.cells[tag]]) * shape.size
         if curvature.min(axis=1).max() > DEVELOPABLE:
             return []
         (flat if curvature.max() <= FLAT else bent).append(tag)
-    inner = {number: edge for number, edge in shape.edges.items() if len(edge.faces) == 2 and set(edge.faces) <= set(faces)}
+    inner = shape.edges_inside(faces)
     curved = [edge for edge in inner.values() if not edge.straight and (edge.angle or not set(edge.faces) <= set(flat))]
     if not flat or curved or at_vertex(shape, inner):
         return []
-    found = [bend_of(shape, sorted(group), inner) for group in shape.components(bent)]
-    found += [Bend([], number, abs(edge.angle), 0.0, line_of(shape, number)) for number, edge in inner.items() if edge.angle]
+    found = [bend_of(shape, sorted(group)) for group in shape.components(bent)]
+    found += [Bend([], number, abs(edge.angle), 0.0, line_of(shape, number)) for number, edge in inner.items()
+              if edge.angle]
     found = [bend for bend in found if bend.angle >= LEAST]
     # A bend goes from rim to rim, with a flat face on each side.
     return found if all(bend.edge or beside(shape, bend.faces, flat) == 2 for bend in found) else []
@@ -71,7 +73,7 @@ def line_of(shape: Shape, edge: int) -> np.ndarray:
     return unit(shape.nodes[b] - shape.nodes[a])
 
 
-def bend_of(shape: Shape, group: list[int], inner: dict) -> Bend:
+def bend_of(shape: Shape, group: list[int]) -> Bend:
     """Return the bend of curved faces: its angle is that between the outermost normals."""
     own = shape.of(group)
     normal = shape.corner_normal[own].reshape(-1, 3)

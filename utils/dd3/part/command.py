@@ -50,9 +50,9 @@ def write_reading(reading: Reading, folder: Path) -> None:
 
 
 def say(reading: Reading, folder: Path) -> None:
-    """Print the summary, warnings and errors; end with exit code 2 if the part cannot be drawn."""
-    print(reading.path, *table.summary(reading), f"  {'written':<10} {folder / 'part.txt'} {folder / 'part.png'}", sep="\n",
-          flush=True)
+    """Print the summary, warnings and errors."""
+    written = f"  {'written':<10} {folder / 'part.txt'} {folder / 'part.png'}"
+    print(reading.path, *table.summary(reading), written, sep="\n", flush=True)
     for text in reading.warnings:
         print(f"warning: {reading.path}: {text}", file=sys.stderr)
     for fault in reading.faults:
@@ -74,8 +74,8 @@ def convert(words: Sequence[str]) -> None:
             parser.error(f"--{name} takes a positive number")
     folder = options.target or Path(f"{options.source.stem}_reading")
     with session() as gmsh:
-        reading = read_part(gmsh, Request(options.source, options.part, options.faces, options.toward, options.thickness,
-                                          options.scale, options.sew))
+        reading = read_part(gmsh, Request(options.source, options.part, options.faces, options.toward,
+                                          options.thickness, options.scale, options.sew))
     write_reading(reading, folder)
     say(reading, folder)
     if reading.faults:

@@ -40,9 +40,10 @@ AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 @dataclass
 class Direction:
     """A press direction, from the part to the punch: unit vector and name; draft angles of the triangles, degrees: 90
-    where the side is level, 0 at a wall along the direction, negative where it is undercut, NaN on rims; the sign of the
-    upper side's normals, -1 for a surface that looks down; faces that are undercut with their least draft, degrees, or 0 where something is above them; the fraction of the sides that is
-    undercut; the projected area over that of the sides; least draft, of 99.5 % of the area; extent of the part along the direction, mm; the faces of the upper
+    where the side is level, 0 at a wall along the direction, negative where it is undercut, NaN on rims; the sign of
+    the upper side's normals, -1 for a surface that looks down; faces that are undercut with their least draft, degrees,
+    or 0 where something is above them; the fraction of the sides that is undercut; the projected area over that of the
+    sides; least draft, of 99.5 % of the area; extent of the part along the direction, mm; the faces of the upper
     side."""
 
     name: str
@@ -68,6 +69,11 @@ class Direction:
             for sign, value in (("+", 1.0), ("-", -1.0)):
                 if angle_between(self.vector, value * np.array(axis)) < 0.05:
                     return sign + name
+        return self.components
+
+    @property
+    def components(self) -> str:
+        """Return the components of the direction, as an option takes them."""
         return " ".join(f"{value:.4g}" for value in np.round(self.vector, 4) + 0.0)
 
 
@@ -158,8 +164,9 @@ def optimal(normal: np.ndarray, mean: np.ndarray) -> list[tuple[str, np.ndarray]
     """Return the direction of the largest projected area and that of the largest least draft, of those from which no
     normal looks away; none if each direction has one that does.
 
-    The former is the projection of the mean normal on the cone of these directions, the latter the point of the normals'
-    convex hull that is nearest to the origin: problems of least squares with multipliers that are not negative.
+    The former is the projection of the mean normal on the cone of these directions, the latter the point of the
+    normals' convex hull that is nearest to the origin: problems of least squares with multipliers that are not
+    negative.
     """
     unique = np.unique(np.round(normal, 4), axis=0)
     found = []
@@ -174,14 +181,15 @@ def optimal(normal: np.ndarray, mean: np.ndarray) -> list[tuple[str, np.ndarray]
 
 
 def best(shape: Shape, found: list[Direction], sheet: Sheet) -> Direction:
-    """Return the direction that is proposed: without undercut, of enough draft, with the largest projected area, an axis
-    of the file unless another one gains draft; without any such one that of the least undercut. Of a block it is that
-    from which the face is least flat."""
+    """Return the direction that is proposed: without undercut, of enough draft, with the largest projected area, an
+    axis of the file unless another one gains draft; without any such one that of the least undercut. Of a block it is
+    that from which the face is least flat."""
     if sheet.kind == "block":
         return as_tool(shape, max(found, key=lambda one: relief(shape, one)))
     free = [one for one in found if one.free]
     if not free:
-        return min((one for one in found if one.projected >= LEAST_AREA), default=found[0], key=lambda one: one.fraction)
+        seen = [one for one in found if one.projected >= LEAST_AREA]
+        return min(seen or found, key=lambda one: one.fraction)
     first = max(free, key=lambda one: (min(one.least, ENOUGH), one.projected))
     axes = [one for one in free if one.name.startswith("axis")]
     axis = max(axes, key=lambda one: (min(one.least, ENOUGH), one.projected), default=None)

@@ -71,8 +71,8 @@ def read_roles(shape: Shape, direction: Direction, outer: Loop | None) -> dict[i
 
 
 def level_name(shape: Shape, roles: dict[int, Role], group: set[int], outer: Loop | None) -> str:
-    """Return the name of connected level faces: floor where the faces around it rise, flange where they fall and the rim
-    of the part is beside it, island where they fall, step otherwise."""
+    """Return the name of connected level faces: floor where the faces around it rise, flange where they fall and the
+    rim of the part is beside it, island where they fall, step otherwise."""
     around = set().union(*(shape.neighbours[tag] for tag in group)) & set(roles) - group
     at_rim = outer is not None and bool(group & set(outer.faces))
     area = sum(shape.areas[tag] for tag in group)
@@ -85,7 +85,8 @@ def level_name(shape: Shape, roles: dict[int, Role], group: set[int], outer: Loo
     return "floor" if area > 0.5 * sum(shape.areas[tag] for tag in roles) else "step"
 
 
-def inner_and_outer_radius(shape: Shape, sides: tuple[list[int], list[int]]) -> tuple[tuple[float, int], tuple[float, int]]:
+def inner_and_outer_radius(shape: Shape, sides: tuple[list[int], list[int]]
+                          ) -> tuple[tuple[float, int], tuple[float, int]]:
     """Return the least radius inside the bends of both sides and that outside, mm, 0 for a sharp edge, each with its
     face or edge, inf and 0 without; the same for both if one of the sides has no faces."""
     found = [(np.inf, 0), (np.inf, 0)]
@@ -94,8 +95,8 @@ def inner_and_outer_radius(shape: Shape, sides: tuple[list[int], list[int]]) -> 
             radius = least_radius(shape, tag)
             where = int(radius < 0)
             found[where] = min(found[where], (abs(radius), tag))
-        for number, edge in shape.edges.items():
-            if edge.angle and len(edge.faces) == 2 and set(edge.faces) <= set(side):
+        for number, edge in shape.edges_inside(side).items():
+            if edge.angle:
                 where = int(edge.angle > 0)
                 found[where] = min(found[where], (0.0, number))
     return (found[0], found[1]) if all(sides) else (min(found), min(found))

@@ -8,8 +8,8 @@ from dd3.part.shape import Shape, angle_between, unit
 
 # Variation of the radius, relative, up to which a hole is round.
 ROUND = 0.01
-# Angle between the plane of an inner loop and the normals of the faces beside it below which the sheet stands across the
-# loop, degrees: it is lanced there, cut along a line and formed on one side of it, or has a collar.
+# Angle between the plane of an inner loop and the normals of the faces beside it below which the sheet stands across
+# the loop, degrees: it is lanced there, cut along a line and formed on one side of it, or has a collar.
 LANCED = 20.0
 # Mean sign of the normals beside such a loop, away from its middle, above which it ends a wall around it.
 COLLAR = 0.8
@@ -106,8 +106,8 @@ def hole_of(shape: Shape, loop: Loop) -> Hole:
 
 
 def find_notches(shape: Shape, faces: list[int], loop: Loop) -> list[Notch]:
-    """Return the notches of the outer rim: stretches in which it turns inwards between two corners, and goes on in about
-    its direction behind them."""
+    """Return the notches of the outer rim: stretches in which it turns inwards between two corners, and goes on in
+    about its direction behind them."""
     own = shape.of(faces)
     corners = shape.nodes[shape.triangles[own]]
     angle = np.stack([angle_between(corners[:, (k + 1) % 3] - corners[:, k], corners[:, (k + 2) % 3] - corners[:, k])
@@ -126,8 +126,8 @@ def find_notches(shape: Shape, faces: list[int], loop: Loop) -> list[Notch]:
         ends = shape.nodes[loop.nodes[corner[[before, after]]]]
         along = unit(ends[1] - ends[0])
         away = shape.nodes[loop.nodes[corner[inside]]] - ends[0]
-        found.append(Notch(float(np.linalg.norm(ends[1] - ends[0])),
-                           float(np.linalg.norm(away - (away @ along)[:, None] * along, axis=1).max()), ends.mean(axis=0)))
+        depth = float(np.linalg.norm(away - (away @ along)[:, None] * along, axis=1).max())
+        found.append(Notch(float(np.linalg.norm(ends[1] - ends[0])), depth, ends.mean(axis=0)))
     return found
 
 
@@ -143,8 +143,8 @@ def inward_runs(turn: np.ndarray) -> list[np.ndarray]:
 
 
 def mouth(turn: np.ndarray, inside: np.ndarray, step: int) -> tuple[int, float]:
-    """Return the corner nearest to a run at which the mouth of a notch begins, in one direction around the loop, and the
-    turn there: of all corners that turn outwards up to half of what the run turns inwards."""
+    """Return the corner nearest to a run at which the mouth of a notch begins, in one direction around the loop, and
+    the turn there: of all corners that turn outwards up to half of what the run turns inwards."""
     most = -turn[inside].sum() / 2 + CHANGE / 2
     here = int(inside[0] if step < 0 else inside[-1])
     total, nearest = 0.0, (here + step) % len(turn)

@@ -58,12 +58,12 @@ def colours(reading: Reading) -> np.ndarray:
     from matplotlib.colors import to_rgb
     shape, direction = reading.shape, reading.direction
     if not direction:
-        return np.tile(np.uint8(255 * LEVEL), (len(shape.face), 1))
+        return np.tile((255 * LEVEL).astype(np.uint8), (len(shape.face), 1))
     draft = np.clip(np.nan_to_num(direction.draft) / 90, 0, 1)[:, None]
     found = WALLS + draft * (LEVEL - WALLS)
     found[np.isnan(direction.draft)] = to_rgb(RIM)
     found[np.isin(shape.face, list(direction.undercut))] = to_rgb(BACK)
-    return np.uint8(255 * found)
+    return (255 * found).astype(np.uint8)
 
 
 def lines(pv: Any, reading: Reading, edges: list[int] | None) -> Any:
@@ -79,11 +79,11 @@ def label(plotter: Any, reading: Reading, rays: Rays, view: np.ndarray) -> None:
     shape = reading.shape
     marked = {tag for fault in reading.faults for tag in fault.faces}
     tags = sorted(shape.tags, key=lambda tag: (tag not in marked, tag in reading.sheet.rims, -shape.areas[tag]))
-    place = {tag: spot for tag in tags[:2 * MOST_LABELS] if (spot := seen_place(reading, rays, tag, view)) is not None}
-    shown = list(place)[:MOST_LABELS]
-    style = {"font_size": 13, "bold": False, "show_points": False, "always_visible": True, "margin": 1}
+    places = {tag: seen_place(reading, rays, tag, view) for tag in tags[:2 * MOST_LABELS]}
+    shown = [tag for tag, place in places.items() if place is not None][:MOST_LABELS]
+    style: dict[str, Any] = {"font_size": 13, "bold": False, "show_points": False, "always_visible": True, "margin": 1}
     if shown:
-        plotter.add_point_labels(np.array([place[tag] for tag in shown]), [str(tag) for tag in shown], shape_color="white",
+        plotter.add_point_labels(np.array([places[tag] for tag in shown]), [str(tag) for tag in shown], shape_color="white",
                                  shape_opacity=0.6, **style)
     edges = sorted({edge for fault in reading.faults for edge in fault.edges})
     if edges:
@@ -98,7 +98,9 @@ def seen_place(reading: Reading, rays: Rays, tag: int, view: np.ndarray) -> np.n
     own = shape.cells[tag]
     if shape.closed:
         own = own[shape.normal[own] @ view > 0.05]
-    own = own[np.argsort(np.linalg.norm(shape.place[own] - shape.place[own].mean(axis=0), axis=1))][:TRIED] if len(own) else own
+    if not len(own):
+        return None
+    own = own[np.argsort(np.linalg.norm(shape.place[own] - shape.place[own].mean(axis=0), axis=1))][:TRIED]
     ahead = AHEAD * shape.size
     seen = rays.hits(own, np.tile(view, (len(own), 1)), ahead).triangle < 0
     return shape.place[own[seen][0]] + ahead * view if seen.any() else None

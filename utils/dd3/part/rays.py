@@ -34,13 +34,13 @@ class Rays:
         self.tree.SetDataSet(data)
         self.tree.BuildLocator()
         self.data, self.ids, self.cell = data, vtkIdList(), vtkGenericCell()
-        self.reference = reference
+        self.reference: Any = reference
         self.shape = shape
 
     def hits(self, origin: np.ndarray, direction: np.ndarray, ahead: np.ndarray | float) -> "Hits":
         """Return where rays from triangles `origin` (n,) along unit vectors (n, 3) first meet the others. They begin
-        `ahead` of the flat triangles' middles, mm, a length along the ray or vectors (n, 3); distances are from the points
-        on the CAD."""
+        `ahead` of the flat triangles' middles, mm, a length along the ray or vectors (n, 3); distances are from the
+        points on the CAD."""
         from vtkmodules.vtkCommonCore import vtkPoints
         found = vtkPoints()
         point, triangle = np.zeros((len(origin), 3)), np.full(len(origin), -1)
@@ -54,8 +54,8 @@ class Rays:
         return self.on_surface(self.shape.place[origin], direction, point, triangle)
 
     def on_surface(self, start: np.ndarray, direction: np.ndarray, point: np.ndarray, triangle: np.ndarray) -> "Hits":
-        """Return hits whose distance and normal are those of the curved surface, to second order: between the corners it
-        is half as far from the triangle as the tangent planes at the corners."""
+        """Return hits whose distance and normal are those of the curved surface, to second order: between the corners
+        it is half as far from the triangle as the tangent planes at the corners."""
         met = triangle >= 0
         corner = self.shape.nodes[self.shape.triangles[triangle[met]]]
         normals = self.shape.corner_normal[triangle[met]]
@@ -81,6 +81,6 @@ def barycentric(corner: np.ndarray, point: np.ndarray) -> np.ndarray:
     """Return the barycentric coordinates (n, 3) of points in triangles (n, 3, 3)."""
     area = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
     square = np.maximum((area * area).sum(axis=1), 1e-300)
-    parts = [(np.cross(corner[:, (k + 2) % 3] - corner[:, (k + 1) % 3], point - corner[:, (k + 1) % 3]) * area).sum(axis=1)
-             for k in range(3)]
-    return np.stack(parts, axis=1) / square[:, None]
+    first, second = np.roll(corner, -1, axis=1), np.roll(corner, -2, axis=1)
+    parts = np.cross(second - first, point[:, None] - first)
+    return (parts * area[:, None]).sum(axis=2) / square[:, None]

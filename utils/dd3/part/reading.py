@@ -33,11 +33,12 @@ UNITS = {"inches": 25.4, "metres": 1000.0}
 
 @dataclass
 class Request:
-    """What is to be read: file; names of parts and numbers of faces, none for all; direction from the part to the punch,
-    none for the best; thickness to be checked, mm; factor on the coordinates; distance of edges to be sewn, mm."""
+    """What is to be read: file; names of parts and numbers of faces, none for all; direction from the part to the
+    punch, none for the best; thickness to be checked, mm; factor on the coordinates; distance of edges to be sewn,
+    mm."""
 
     path: Path
-    parts: Sequence[str] | None = None
+    parts: list[str] | None = None
     faces: Sequence[str] | None = None
     toward: Sequence[float] | np.ndarray | None = None
     thickness: float | None = None
@@ -56,10 +57,11 @@ class Fault:
 
 @dataclass
 class Reading:
-    """What is found of a part: unit of the file; names of its parts with their faces; triangles; sheet, surface or block; whether its faces belong to solids;
-    directions with the one that is taken, and the best one; rims of its upper side, the outer one first; roles of its
-    faces; bends, if it is formed by these alone; least radii inside and outside of bends with the face or the edge;
-    planes of symmetry; what is to be told; why it cannot be drawn; seconds."""
+    """What is found of a part: unit of the file; names of its parts with their faces; triangles; sheet, surface or
+    block; whether its faces belong to solids; directions with the one that is taken, and the best one; rims of its
+    upper side, the outer one first; roles of its faces; bends, if it is formed by these alone; least radii inside and
+    outside of bends with the face or the edge; planes of symmetry; what is to be told; why it cannot be drawn;
+    seconds."""
 
     path: Path
     unit: str
@@ -117,9 +119,9 @@ def tell_faces(gmsh: Any, reading: Reading, request: Request) -> None:
     """Enter faces without triangles and gaps between free edges."""
     failed = reading.shape.failed
     if failed:
-        reading.faults.append(Fault(f"faces {faces.spans(failed)} are damaged: Gmsh makes no triangles of them; mend them "
-                                    "in the CAD program", edges=[edge for edge, known in reading.shape.edges.items()
-                                                                 if set(known.faces) & set(failed)]))
+        edges = [edge for edge, known in reading.shape.edges.items() if set(known.faces) & set(failed)]
+        reading.faults.append(Fault(f"faces {faces.spans(failed)} are damaged: Gmsh makes no triangles of them; mend "
+                                    "them in the CAD program", edges=edges))
     gaps = cad.find_gaps(gmsh)
     if gaps:
         edges = sorted({edge for gap in gaps for edge in gap[1:] if edge in reading.shape.edges})
@@ -139,8 +141,9 @@ def tell_thickness(reading: Reading, request: Request) -> None:
                  + (f" and {thickness * factor:.3g} mm thick" if thickness else "") + f": --scale {factor:g}"
                  for name, factor in UNITS.items() if not thickness or thickness * factor <= THICK]
         if other:
-            reading.warnings.append(f"{reading.shape.size:.3g} mm long" + (f" and {thickness:.3g} mm thick" if thickness else "")
-                                    + f", in a file without a unit; {'; '.join(other)}")
+            thick = f" and {thickness:.3g} mm thick" if thickness else ""
+            reading.warnings.append(f"{reading.shape.size:.3g} mm long{thick}, in a file without a unit; "
+                                    + "; ".join(other))
 
 
 def read_form(reading: Reading, rays: Rays, request: Request) -> None:
@@ -158,13 +161,22 @@ def read_form(reading: Reading, rays: Rays, request: Request) -> None:
         reading.directions.insert(0, reading.direction)
     if sheet.kind != "block":
         reading.bends = find_bends(shape, sheet.sides[0])
-        upper = find_loops(shape, reading.direction.upper)
-        reading.outer = upper[0] if upper else None
-        reading.holes = [hole_of(shape, loop) for loop in upper[1:]]
-        reading.notches = find_notches(shape, reading.direction.upper, upper[0]) if upper else []
-        reading.roles = read_roles(shape, reading.direction, reading.outer)
-        tell_undercut(reading)
+    read_upper(reading, reading.direction)
     reading.symmetry = symmetry_planes(shape, rays, reading.direction.vector)
+
+
+def read_upper(reading: Reading, direction: Direction) -> None:
+    """Take a direction: read rims and roles of the faces of its upper side, and why the part cannot be drawn from
+    it."""
+    reading.direction = direction
+    if reading.sheet.kind == "block":
+        return
+    loops = find_loops(reading.shape, direction.upper)
+    reading.outer = loops[0] if loops else None
+    reading.holes = [hole_of(reading.shape, loop) for loop in loops[1:]]
+    reading.notches = find_notches(reading.shape, direction.upper, loops[0]) if loops else []
+    reading.roles = read_roles(reading.shape, direction, reading.outer)
+    tell_undercut(reading)
 
 
 def tell_undercut(reading: Reading) -> None:
@@ -178,11 +190,15 @@ def tell_undercut(reading: Reading) -> None:
         return
     hidden = direction.undercut
     lean = -min(hidden.values(), default=0.0)
-    text = (f"{100 * direction.fraction:.2g} % of the sides, " + (f"they lean back by up to {lean:.3g} degrees"
-            if lean > 0.5 else "something is above them")) if hidden else "the part is seen along its faces"
-    named = faces.spans(list(hidden)) if hidden else "-"
-    if other.free:
-        said = f"undercut at faces {named} from {direction.words} ({text}); from {other.words} there is none"
+    how = f"they lean back by up to {lean:.3g} degrees" if lean > 0.0 else "something is above them"
+    text = f"{100 * direction.fraction:.2g} % of the sides, {how}"
+    named = faces.spans(list(hidden)) if hidden else ""
+    if not hidden:
+        said = (f"from {direction.words} the part is seen along its faces" + (f": --toward {other.components}"
+                                                                              if other.free else ""))
+    elif other.free:
+        said = (f"undercut at faces {named} from {direction.words} ({text}); from {other.words} there is none: --toward "
+                f"{other.components}")
     else:
         said = (f"undercut at faces {named}: not in one stroke from any direction; from {other.words} they are {text}")
         if reading.bends:

@@ -9,7 +9,6 @@ from dd3.errors import Problem
 from dd3.part.shape import SHARP, Edge, Shape, angle_between, unit
 from dd3.tools.joints import signs
 from dd3.tools.limits import limited
-from dd3.tools.nagata import groups
 from dd3.tools.parameters import parameters_of
 
 # Largest and least side of a triangle over the diagonal of the part's box, and triangles of a turn of 360 degrees.
@@ -51,8 +50,8 @@ def triangulate(gmsh: Any, path: Path, tags: list[int]) -> list[int]:
     for name, value in {**OPTIONS, "Mesh.MeshSizeMax": LONGEST * size, "Mesh.MeshSizeMin": SHORTEST * size}.items():
         gmsh.option.setNumber(name, value)
     try:
-        with limited(TIME, f"{path}: the faces are not read in {TIME:.0f} s of processor time: take the part that is to "
-                     "be formed by --part"):
+        with limited(TIME, f"{path}: the faces are not read in {TIME:.0f} s of processor time: take the part that is "
+                     "to be formed by --part"):
             gmsh.model.mesh.generate(2)
     except Exception:  # Gmsh raises nothing more specific
         pass
@@ -75,8 +74,8 @@ def elements(gmsh: Any, tags: list[int]) -> tuple[np.ndarray, np.ndarray, np.nda
 
 def on_cad(gmsh: Any, nodes: np.ndarray, triangles: np.ndarray, face: np.ndarray
           ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return the normals at the corners of the triangles and, at a point of each on the CAD, place, normal and principal
-    curvatures."""
+    """Return the normals at the corners of the triangles and, at a point of each on the CAD, place, normal and
+    principal curvatures."""
     corner = np.zeros((len(triangles), 3, 3))
     place, normal = np.zeros((len(triangles), 3)), np.zeros((len(triangles), 3))
     curvature = np.zeros((len(triangles), 2))
@@ -103,8 +102,8 @@ def on_cad(gmsh: Any, nodes: np.ndarray, triangles: np.ndarray, face: np.ndarray
 
 
 def middle_parameters(gmsh: Any, tag: int, table: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Return the parameters of a point of each triangle (m, 2): the mean of those of its corners (m, 3, 2), or where these
-    are unknown, or on both sides of a seam, those of the point of the CAD that is nearest to its middle."""
+    """Return the parameters of a point of each triangle (m, 2): the mean of those of its corners (m, 3, 2), or where
+    these are unknown, or on both sides of a seam, those of the point of the CAD that is nearest to its middle."""
     uv, middle = table.mean(axis=1), corners.mean(axis=1)
     known = ~np.isnan(uv).any(axis=1)
     place = np.full_like(middle, np.inf)

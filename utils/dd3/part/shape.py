@@ -16,8 +16,8 @@ SHARP = 3.0
 
 @dataclass
 class Edge:
-    """An edge of the CAD: length, mm, faces beside it, whether it is straight, and the angle between its faces, degrees:
-    positive where it is convex seen from the side of the normals, 0 where they join smoothly."""
+    """An edge of the CAD: length, mm, faces beside it, whether it is straight, and the angle between its faces,
+    degrees: positive where it is convex seen from the side of the normals, 0 where they join smoothly."""
 
     length: float
     straight: bool
@@ -27,13 +27,14 @@ class Edge:
 
 @dataclass
 class Shape:
-    """Nodes (n, 3), mm; triangles (m, 3), their faces (m,), areas (m,) and unit normals at their corners (m, 3, 3). At a
-    point of each on the CAD: place (m, 3), unit normal (m, 3), principal curvatures (m, 2), 1/mm, positive where the
+    """Nodes (n, 3), mm; triangles (m, 3), their faces (m,), areas (m,) and unit normals at their corners (m, 3, 3). At
+    a point of each on the CAD: place (m, 3), unit normal (m, 3), principal curvatures (m, 2), 1/mm, positive where the
     centre is on the side of the normal.
 
-    The triangles of a body have one orientation, those of a closed body look outwards. Faces and edges go by the tags of
-    Gmsh: `kinds` are the kinds of the faces' surfaces, `areas` their areas, mm2, and `centres` their centroids. Edges are divided into pieces: their nodes (k, 2), their edges
-    (k,), and for each side of a triangle, node k to k + 1, the piece on it (m, 3), -1 inside a face.
+    The triangles of a body have one orientation, those of a closed body look outwards. Faces and edges go by the tags
+    of Gmsh: `kinds` are the kinds of the faces' surfaces, `areas` their areas, mm2, and `centres` their centroids.
+    Edges are divided into pieces: their nodes (k, 2), their edges (k,), and for each side of a triangle, node k to k +
+    1, the piece on it (m, 3), -1 inside a face.
     """
 
     nodes: np.ndarray
@@ -91,6 +92,12 @@ class Shape:
             for tag in edge.faces:
                 found[tag].update(edge.faces)
         return {tag: others - {tag} for tag, others in found.items()}
+
+    def edges_inside(self, faces: Iterable[int]) -> dict[int, Edge]:
+        """Return the edges between two of the faces."""
+        own = set(faces)
+        return {number: edge for number, edge in self.edges.items()
+                if len(edge.faces) == 2 and own.issuperset(edge.faces)}
 
     def of(self, faces: Iterable[int]) -> np.ndarray:
         """Return the triangles of faces."""

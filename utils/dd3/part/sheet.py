@@ -90,13 +90,14 @@ def most_common(values: np.ndarray, weights: np.ndarray) -> float:
 
 
 def two_sides(shape: Shape, faces: list[int], here: np.ndarray, there: np.ndarray) -> tuple[list[int], list[int]]:
-    """Return the faces of both sides of a sheet: neighbours are on the same side, faces that face each other, `here` and
-    `there`, on different ones."""
+    """Return the faces of both sides of a sheet: neighbours are on the same side, faces that face each other, `here`
+    and `there`, on different ones."""
     place = {tag: i for i, tag in enumerate(faces)}
     same = np.array([(place[a], place[b]) for a in faces for b in shape.neighbours[a] if b in place and a < b],
                     int).reshape(-1, 2)
-    pairs = {(min(a, b), max(a, b)) for a, b in zip(here.tolist(), there.tolist()) if a in place and b in place and a != b}
-    across = np.array([(place[a], place[b]) for a, b in pairs], int).reshape(-1, 2)
+    pairs = {(place[a], place[b]) for a, b in zip(here.tolist(), there.tolist())
+             if a in place and b in place and a != b}
+    across = np.array(sorted(pairs), int).reshape(-1, 2)
     joined = np.concatenate([same, across])
     sign, _, _ = signs(len(faces), joined[:, 0], joined[:, 1], np.arange(len(joined)) < len(same))
     return ([tag for tag, s in zip(faces, sign) if s > 0], [tag for tag, s in zip(faces, sign) if s < 0])

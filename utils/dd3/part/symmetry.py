@@ -4,7 +4,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from dd3.part.rays import Rays
-from dd3.part.shape import Shape, angle_between, unit
+from dd3.part.shape import Shape, unit
 
 # Distance of the centroids over the size, and difference of the areas, relative, of faces that are mirror images.
 CENTRE, AREA = 1e-4, 1e-3
@@ -15,20 +15,22 @@ ALONG = 0.01
 
 
 def symmetry_planes(shape: Shape, rays: Rays, up: np.ndarray) -> list[tuple[np.ndarray, float]]:
-    """Return at most two planes of symmetry through the centroid of all faces, along the press direction: across the axes
-    of the file, the principal axes, or what of the axes is across the direction; unit normal and distance from the
+    """Return at most two planes of symmetry through the centroid of all faces, along the press direction: across the
+    axes of the file, the principal axes, or what of the axes is across the direction; unit normal and distance from the
     origin, mm."""
     area = np.array([shape.areas[tag] for tag in shape.tags])
     centre = np.array([shape.centres[tag] for tag in shape.tags])
     middle = np.average(centre, axis=0, weights=area)
     away = shape.place - np.average(shape.place, axis=0, weights=shape.area)
     principal = np.linalg.eigh((shape.area[:, None] * away).T @ away)[1].T
-    tree, found = cKDTree(centre), []
+    tree = cKDTree(centre)
+    found: list[tuple[np.ndarray, float]] = []
     points = shape.nodes[np.unique(shape.triangles)]
     points = points[:: len(points) // POINTS + 1]
     across = [unit(np.cross(up, axis)) for axis in np.eye(3) if np.linalg.norm(np.cross(up, axis)) > 0.1]
     for normal in [*np.eye(3), *principal, *across]:
-        if len(found) == 2 or abs(normal @ up) > ALONG or any(min(angle_between(normal, other), angle_between(normal, -other)) < 0.1 for other, _ in found):
+        known = any(abs(normal @ other) > np.cos(np.radians(0.1)) for other, _ in found)
+        if len(found) == 2 or known or abs(normal @ up) > ALONG:
             continue
         image = centre - 2 * np.outer((centre - middle) @ normal, normal)
         near = tree.query_ball_point(image, CENTRE * shape.size)

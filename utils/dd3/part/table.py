@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Tables of the reading of a part: a short one for the screen, and one of all faces."""
 from collections import Counter
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from dd3.part.reading import Reading
 from dd3.tools.faces import spans
 
 MOST = 6  # items in a line
+SHORT = "kind", "direction", "bends", "holes", "notches", "radii", "read in"  # titles of the short summary
 
 
 def summary(reading: Reading) -> list[str]:
@@ -17,7 +19,8 @@ def summary(reading: Reading) -> list[str]:
     shape, sheet = reading.shape, reading.sheet
     rows = [("unit", "none stated, taken as mm" if reading.unit == "none" else
              "mm" if reading.unit == "mm" else f"{reading.unit}, converted to mm"),
-            ("box", ", ".join(f"{name} {a:.4g} to {b:.4g}" for name, a, b in zip("xyz", *rounded(shape.box, shape.size))) + " mm"),
+            ("box", ", ".join(f"{name} {a:.4g} to {b:.4g}" for name, a, b
+                              in zip("xyz", *rounded(shape.box, shape.size))) + " mm"),
             ("kind", kind_of(reading)),
             ("faces", f"{len(shape.tags)}" + (f": {len(sheet.sides[0])} and {len(sheet.sides[1])} of the sides, "
                                               f"{len(sheet.rims)} of rims" if sheet.kind == "sheet" else ""))]
@@ -34,11 +37,9 @@ def summary(reading: Reading) -> list[str]:
                      + some([f"{bend.angle:.3g} degrees" for bend in reading.bends])))
     if reading.direction and sheet.kind != "block":
         kinds = Counter(hole.words for hole in reading.holes)
-        rows += [("holes", f"{len(reading.holes)}" + (": " + some([f"{count} {words} mm" for words, count in kinds.items()])
-                                                      if kinds else "")),
-                 ("notches", f"{len(reading.notches)}" + (": " + some([f"{notch.width:.3g} wide, {notch.depth:.3g} deep"
-                                                                       for notch in reading.notches])
-                                                         if reading.notches else ""))]
+        rows += [("holes", counted(reading.holes, [f"{count} {words} mm" for words, count in kinds.items()])),
+                 ("notches", counted(reading.notches, [f"{notch.width:.3g} mm wide, {notch.depth:.3g} mm deep"
+                                                       for notch in reading.notches]))]
     if reading.direction:
         rows.append(("radii", f"least inside {radius_words(reading.inner_radius)}, outside "
                      f"{radius_words(reading.outer_radius)}" if sheet.kind == "sheet" else
@@ -47,6 +48,12 @@ def summary(reading: Reading) -> list[str]:
     rows += [("", note) for note in reading.notes]
     rows.append(("read in", f"{reading.seconds:.2g} s"))
     return [f"  {title:<10} {text}" for title, text in rows]
+
+
+def short(reading: Reading) -> list[str]:
+    """Return the lines that `dd3 tool` prints: one of each title of SHORT, and the notes."""
+    notes = {f"  {'':<10} {note}" for note in reading.notes}
+    return [line for line in summary(reading) if line[2:12].strip() in SHORT or line in notes]
 
 
 def kind_of(reading: Reading) -> str:
@@ -86,11 +93,11 @@ def role_rows(reading: Reading) -> list[tuple[str, str]]:
             extra = f", draft from {least + 0.0:.3g} degrees" if name == "wall" else \
                 f", radius {some([f'{radius:.4g}' for radius in radii])} mm" if "radius" in name or name in (
                     "shoulder", "corner") else ""
-            rows.append((name.replace("bottom radius", "radius"), f"{faces_words(tags)}{extra}"))
+            rows.append((name.replace("bottom radius", "radius"), f"{named(tags)}{extra}"))
     return rows
 
 
-def faces_words(tags: list[int]) -> str:
+def named(tags: list[int]) -> str:
     """Return numbers of faces in words."""
     return f"{'face' if len(tags) == 1 else 'faces'} {spans(tags)}"
 
@@ -98,6 +105,11 @@ def faces_words(tags: list[int]) -> str:
 def some(words: list[str]) -> str:
     """Return the first of some words."""
     return ", ".join(words[:MOST]) + (f" and {len(words) - MOST} more" if len(words) > MOST else "")
+
+
+def counted(items: Sequence[object], words: list[str]) -> str:
+    """Return the number of some items, with words on them."""
+    return f"{len(items)}" + (f": {some(words)}" if words else "")
 
 
 def radius_words(radius: tuple[float, int]) -> str:

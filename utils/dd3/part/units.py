@@ -6,7 +6,8 @@ from pathlib import Path
 INCH = 25.4
 # Names of lengths in STEP and IGES; others are given as they are.
 SI = {"MILLI": "mm", "CENTI": "cm", "MICRO": "µm", "": "m"}
-OTHERS = {"INCH": "inch", "INCHES": "inch", "IN": "inch", "FOOT": "foot", "FT": "foot", "MM": "mm", "M": "m", "CM": "cm"}
+OTHERS = {"INCH": "inch", "INCHES": "inch", "IN": "inch", "FOOT": "foot", "FT": "foot", "MM": "mm", "CM": "cm",
+          "M": "m"}
 IGES = {1: "inch", 2: "mm", 4: "foot", 6: "m", 10: "cm"}
 
 
@@ -37,7 +38,8 @@ def unit_of_step(text: str) -> str:
 def unit_of_iges(lines: list[str]) -> str:
     """Return the unit of an IGES file: the flag of its global section, the 14th value."""
     text = "".join(line[:72] for line in lines if line[72:73] == "G")
-    values, place = [], 0
+    values: list[str] = []
+    place = 0
     separator = ","
     while place < len(text) and len(values) < 14:
         word = re.match(r"\s*(\d+)H", text[place:])

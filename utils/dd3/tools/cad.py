@@ -466,7 +466,9 @@ def read_cad(gmsh: Any, path: Path, options: argparse.Namespace, progress: Progr
     tags = faces.chosen(gmsh, path, choose(path, model.parts, options.part), options.faces, options.smooth)
     in_solids = {abs(tag) for _, tag in gmsh.model.getBoundary(gmsh.model.getEntities(3), combined=False,
                                                                oriented=False)}
-    if options.thickness and not options.faces and set(tags) <= in_solids:
+    if options.taken:
+        tags = sorted(options.taken)
+    elif options.thickness and not options.faces and set(tags) <= in_solids:
         # The punch touches a sheet from above.
         up = (0, 0, -1 if options.side == "die" else 1)
         tags = faces.side_of_sheet(gmsh, path, tags, moved.rotation(options.rotate).T @ up)

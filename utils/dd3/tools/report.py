@@ -122,7 +122,8 @@ def say_edges(report: Report, surface: Surface, joints: Joints, options: argpars
         report.errors.append(
             f"{plural(len(pairs), 'pair')} of free edges up to {wide:.3g} mm apart, the widest at "
             f"{place_of(joints, pairs[worst, 0])}: {named(surface, surface.face[pairs.ravel() // 4])}; "
-            + (f"--sew {up(wide):g} joins them" if wide > (options.sew or 0.0)
+            + ("the offset of the part's faces does not close there: --picture shows the place" if options.kind == "cad"
+               else f"--sew {up(wide):g} joins them" if wide > (options.sew or 0.0)
                else "they overlap or are divided differently; mend the file"))
 
 

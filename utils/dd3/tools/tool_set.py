@@ -72,9 +72,8 @@ def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
     result = ToolSet(distance=distance, lines=[("", note) for note in punch.notes + die.notes])
     rims, others = find_rims(die, find_joints(die.net))
     if not rims:
-        raise Problem(f"{options.source}: no free edge of the part at which it climbs by more than 10 degrees: the "
-                      "punch moves along -z into the part. Turn it, e.g. by --rotate 1 0 0 180, or choose its faces "
-                      "by --faces")
+        raise Problem(f"{options.source}: no free edge of the part at which it climbs by more than 10 degrees, as the "
+                      f"punch moves along -z into the part{options.advice}")
     if others:
         result.lines.append(("edges", f"{others} free edges of patches stay open, as the part does not climb there"))
     face = max(float((rim.points[:, 2] + rise(rim, options.shoulder)).max()) for rim in rims)

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What `dd3 tool` takes from the reading of a part: thickness, press direction, the faces of one side; or why it makes
+no tools."""
+import argparse
+
+import numpy as np
+
+from dd3.errors import Problem
+from dd3.gmsh_session import session
+from dd3.part.reading import Reading, Request, read_part, read_upper
+from dd3.part.shape import angle_between, unit
+from dd3.part.table import named
+from dd3.tools.faces import spans
+from dd3.tools.moved import rotation
+
+UP = np.array([0.0, 0.0, 1.0])
+# Angle up to which a direction is z, degrees.
+LEVEL = 0.01
+# Angle from which the direction that is proposed is another one, degrees.
+OTHER = 60.0
+
+
+def read_for_tools(options: argparse.Namespace) -> Reading:
+    """Read the part of the options, and set `thickness`, `rotate` and `taken`, the faces that one tool touches, where
+    they are not given, and `advice` for where no die can be made around it. The punch comes along z after the
+    rotation."""
+    given = options.toward is not None or bool(options.rotate)
+    up = rotation(options.rotate).T @ UP if options.toward is None else unit(np.array(options.toward, float))
+    with session() as gmsh:
+        reading = read_part(gmsh, Request(options.source, options.part, None, up, options.thickness, options.scale,
+                                          options.sew))
+    if reading.direction is None or options.faces:  # with faces of the user's choice the part is not judged
+        reading.faults = reading.faults if reading.direction is None else []
+    elif not given and reading.best is not None and turns(reading):
+        take(reading)
+        up = reading.best.vector
+    if options.toward is not None or not given:
+        options.rotate = turn_to_z(up)
+    if reading.faults:
+        return reading
+    options.advice = advice(reading, up)
+    options.thickness = options.thickness or rounded(reading.sheet.thickness)
+    if not options.thickness:
+        raise Problem(f"{options.source}: {'a surface' if reading.sheet.kind == 'surface' else 'a block'}: give the "
+                      "thickness of the sheet by --thickness")
+    sides = reading.sheet.sides
+    if not options.faces and reading.sheet.kind == "sheet" and reading.direction:
+        upper = reading.direction.upper
+        options.taken = upper if options.side == "punch" else sides[1] if upper == sorted(sides[0]) else sides[0]
+    return reading
+
+
+def rounded(thickness: float | None) -> float | None:
+    """Return a thickness to 0.1 %, without the rounding errors of the CAD."""
+    return float(f"{thickness:.4g}") if thickness else None
+
+
+def turns(reading: Reading) -> bool:
+    """Tell whether another direction is to be taken than z, which has an undercut or is that of the closed side."""
+    direction, best = reading.direction, reading.best
+    assert direction and best
+    closed = bool(angle_between(direction.vector, best.vector) > 179.0)
+    return reading.sheet.kind != "block" and best.free and (closed or not direction.free)
+
+
+def take(reading: Reading) -> None:
+    """Take the best direction."""
+    assert reading.best
+    reading.faults = []
+    reading.directions = [one for one in reading.directions if one is not reading.direction]
+    read_upper(reading, reading.best)
+    reading.notes.append(f"turned: {reading.best.words} becomes +z, from which the punch comes")
+
+
+def advice(reading: Reading, up: np.ndarray) -> str:
+    """Return what to do if the part has no free edge at which it climbs towards `up`."""
+    flange = [tag for tag, role in reading.roles.items() if role.name == "flange"]
+    inner = [tag for tag, role in reading.roles.items() if role.name not in ("flange", "shoulder")]
+    if reading.best and reading.best.free and angle_between(reading.best.vector, up) > OTHER:
+        return f"; the part is open towards {reading.best.words}: --toward {reading.best.components}"
+    if flange and inner:
+        return f"; it has a flange of its own, {named(flange)}: --faces {spans(inner)} leaves it out"
+    return ""
+
+
+def turn_to_z(vector: np.ndarray) -> list[list[float]]:
+    """Return the rotation, axis and degrees, that turns a vector to z, none if it is z."""
+    angle = float(angle_between(vector, UP))
+    if angle < LEVEL:
+        return []
+    axis = np.cross(vector, UP) if angle < 180.0 - LEVEL else np.array([1.0, 0.0, 0.0])
+    return [[*unit(axis).tolist(), angle]]
