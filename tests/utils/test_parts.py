@@ -105,3 +105,19 @@ def test_units():
     assert unit_of_iges(lines) == "inch"
     assert unit_of_iges([line.replace(",1,4HINCH", ",2,2HMM  ") for line in lines]) == "mm"
     assert unit_of_iges([]) == "none"
+
+
+def test_tools(folder, tmp_path):
+    """Check what `dd3 tool` takes from the reading of a part: thickness, direction, refusals before any tool is made."""
+    said = call("tool", folder / "tilted_tray.step", tmp_path / "tilted", "--shoulder", 4, "--flange", 15)
+    assert "sheet of 1 mm" in said and "turned: 0.2396 -0.5115 0.8252 becomes +z" in said, said
+    assert "thickness = 1" in (tmp_path / "tilted" / "draw.dat").read_text() and (tmp_path / "tilted" / "part.png").exists()
+    said = call("tool", folder / "tray.step", tmp_path / "tray", "--toward", 0, 0, 1, "--shoulder", 4, "--flange", 15)
+    assert "turned" not in said, said
+    for name, reason in (("lipped_channel", "not in one stroke from any direction"), ("plate", "nothing is to be formed"),
+                         ("s_rail", "give the thickness"), ("two_angles", "2 parts"),
+                         ("milled", "a block: give the thickness")):
+        assert reason in call("tool", folder / f"{name}.step", tmp_path / name, expect=2)
+        assert not (tmp_path / name / "punch.bez").exists()
+    assert "it has a flange of its own, face 26: --faces 44-60 leaves it out" in call(
+        "tool", folder / "own_flange.step", tmp_path / "own", expect=2)

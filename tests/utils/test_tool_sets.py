@@ -194,19 +194,20 @@ def test_faces(parts, tmp_path):
 
 
 def test_refusals(parts, tmp_path):
-    """Check what is said of parts and options that make no tools; nothing is written."""
+    """Check what is said of parts and options that make no tools; no tools are written."""
     target = tmp_path / "tools"
-    assert "no free edge of the part at which it climbs" in made(parts, "flat", target, expect=2)
-    assert "no free edge of the part at which it climbs" in made(parts, "hat", target, "--rotate", 1, 0, 0, 180,
-                                                                 expect=2)
+    assert "flat: nothing is to be formed" in made(parts, "flat", target, expect=2)
+    said = made(parts, "hat", target, "--rotate", 1, 0, 0, 180, expect=2)
+    assert "no free edge of the part at which it climbs" in said and "open towards +z: --toward 0 0 1" in said, said
     assert "with --thickness a folder" in made(parts, "hat", tmp_path / "die.bez", expect=2)
-    assert "--toward is for one tool" in made(parts, "hat", target, "--toward", 0, 0, 1, expect=2)
+    assert "--toward and --rotate" in made(parts, "hat", target, "--toward", 0, 0, 1, "--rotate", 1, 0, 0, 9, expect=2)
+    assert "--offset is for one tool" in made(parts, "hat", target, "--offset", 1, expect=2)
     assert "no such file" in made(parts, "hat", target, "--material", "none.dat", expect=2)
     assert "--thickness takes CAD" in call("tool", ROOT / "input_files" / "rail" / "die.shape", "--thickness", 1,
                                            expect=2)
     for words in (("--smooth",), ("--side", "die"), ("--clearance", 0.1)):
         assert "goes with" in call("tool", parts / "hat.step", *words, expect=2)
-    assert not target.exists()
+    assert sorted(path.name for path in target.iterdir()) == ["part.png", "part.txt"]
     square = np.array([[0, 0], [1, 1], [1, 0], [0, 1]], float)
     assert plane.crosses(square) and not plane.crosses(square[[0, 2, 1, 3]])
     assert plane.inside(np.array([[0.5, 0.5], [2, 0.5]]), square[[0, 2, 1, 3]]).tolist() == [True, False]

@@ -324,18 +324,18 @@ def make_set(options: argparse.Namespace, command: str) -> dict[str, report.Repo
     are made of a part that cannot be drawn, and none is written if one has errors."""
     material = set_deck.material_in(options.material)
     reading = setup.read_for_tools(options)
+    say(str(options.source), options.source, report.Report(table.short(reading), reading.warnings,
+                                                           [fault.text for fault in reading.faults]))
     if options.target:
         write_reading(reading, options.target)
-    reports = {str(options.source): report.Report(table.short(reading), reading.warnings,
-                                                  [fault.text for fault in reading.faults])}
     if reading.faults:
-        return reports
+        sys.exit(2)
     settle_set(options)
     progress = Progress(options.source.name)
     with session() as gmsh:
         tools = tool_set.made(gmsh, options, progress)
     progress.end()
-    folder = options.target or Path()
+    folder, reports = options.target or Path(), {}
     for name, surface in tools.surfaces.items():
         result, joints = report.judge(surface, options, 0)
         reports[str(folder / f"{name}.bez")] = result

@@ -76,8 +76,8 @@ def convert(words: Sequence[str]) -> None:
     with session() as gmsh:
         reading = read_part(gmsh, Request(options.source, options.part, options.faces, options.toward,
                                           options.thickness, options.scale, options.sew))
-    write_reading(reading, folder)
     say(reading, folder)
+    write_reading(reading, folder)
     if reading.faults:
         sys.exit(2)
 

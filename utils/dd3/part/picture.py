@@ -13,9 +13,9 @@ from dd3.part.shape import unit
 MOST_LABELS = 250
 # Triangles of a face that are tried for its number, and its distance from the face over the size of the part.
 TRIED, AHEAD = 8, 0.005
-RIM, BACK, FAULT, EDGE = "#9aa0a6", "#d62728", "#d62728", "#444444"
-# Colours of draft angles from 0 to 90 degrees, and in words.
-WALLS, LEVEL = np.array([0.98, 0.80, 0.36]), np.array([0.45, 0.66, 0.85])
+FAULT, EDGE = "#d62728", "#444444"
+# Colours of rims, of undercut faces, and of draft angles from 0 to 90 degrees.
+RIM, BACK, WALLS, LEVEL = np.array([[0.60, 0.63, 0.65], [0.84, 0.15, 0.16], [0.98, 0.80, 0.36], [0.45, 0.66, 0.85]])
 
 
 def draw(reading: Reading, path: Path) -> None:
@@ -55,14 +55,13 @@ def draw(reading: Reading, path: Path) -> None:
 
 def colours(reading: Reading) -> np.ndarray:
     """Return the colours of the triangles (m, 3), 0 to 255."""
-    from matplotlib.colors import to_rgb
     shape, direction = reading.shape, reading.direction
     if not direction:
         return np.tile((255 * LEVEL).astype(np.uint8), (len(shape.face), 1))
     draft = np.clip(np.nan_to_num(direction.draft) / 90, 0, 1)[:, None]
     found = WALLS + draft * (LEVEL - WALLS)
-    found[np.isnan(direction.draft)] = to_rgb(RIM)
-    found[np.isin(shape.face, list(direction.undercut))] = to_rgb(BACK)
+    found[np.isnan(direction.draft)] = RIM
+    found[np.isin(shape.face, list(direction.undercut))] = BACK
     return (255 * found).astype(np.uint8)
 
 

@@ -197,8 +197,8 @@ def tell_undercut(reading: Reading) -> None:
         said = (f"from {direction.words} the part is seen along its faces" + (f": --toward {other.components}"
                                                                               if other.free else ""))
     elif other.free:
-        said = (f"undercut at faces {named} from {direction.words} ({text}); from {other.words} there is none: --toward "
-                f"{other.components}")
+        said = (f"undercut at faces {named} from {direction.words} ({text}); from {other.words} there is none: "
+                f"--toward {other.components}")
     else:
         said = (f"undercut at faces {named}: not in one stroke from any direction; from {other.words} they are {text}")
         if reading.bends:
