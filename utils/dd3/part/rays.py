@@ -39,12 +39,12 @@ class Rays:
 
     def hits(self, origin: np.ndarray, direction: np.ndarray, ahead: np.ndarray | float) -> "Hits":
         """Return where rays from triangles `origin` (n,) along unit vectors (n, 3) first meet the others. They begin
-        `ahead` of the flat triangles' middles, mm, a length along the ray or vectors (n, 3); distances are from the
+        `ahead` of the triangles, mm, a length along the ray or vectors (n, 3); distances are from the
         points on the CAD."""
         from vtkmodules.vtkCommonCore import vtkPoints
         found = vtkPoints()
         point, triangle = np.zeros((len(origin), 3)), np.full(len(origin), -1)
-        start = self.shape.middle[origin] + (ahead * direction if np.ndim(ahead) == 0 else ahead)
+        start = self.shape.foot[origin] + (ahead * direction if np.ndim(ahead) == 0 else ahead)
         end = start + 1.5 * self.shape.size * direction
         for i in range(len(origin)):
             self.ids.Reset()

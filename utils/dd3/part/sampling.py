@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Triangles of the faces in a session of Gmsh, with the normals and curvatures of the CAD."""
+from collections import defaultdict
 from pathlib import Path
 from typing import Any
 
@@ -7,12 +8,13 @@ import numpy as np
 
 from dd3.errors import Problem
 from dd3.part.shape import SHARP, Edge, Shape, angle_between, unit
+from dd3.tools.division import Division
 from dd3.tools.joints import signs
 from dd3.tools.limits import limited
 from dd3.tools.parameters import parameters_of
 
 # Largest and least side of a triangle over the diagonal of the part's box, and triangles of a turn of 360 degrees.
-LONGEST, SHORTEST, TURN = 1 / 25, 1 / 250, 12
+LONGEST, SHORTEST, TURN = 1 / 25, 1 / 250, 18
 TIME = 60.0  # processor time for the triangles, s
 OPTIONS = {"Mesh.RecombineAll": 0, "Mesh.SubdivisionAlgorithm": 0, "Mesh.Algorithm": 5, "Mesh.ElementOrder": 1,
            "Mesh.MeshSizeFromCurvature": TURN, "Mesh.MeshSizeExtendFromBoundary": 0, "Mesh.MeshSizeFromPoints": 0}
@@ -44,11 +46,13 @@ def sampled(gmsh: Any, path: Path, tags: list[int]) -> Shape:
 
 def triangulate(gmsh: Any, path: Path, tags: list[int]) -> list[int]:
     """Make the triangles; return the faces of which Gmsh makes none."""
-    low, high = np.reshape(gmsh.model.getBoundingBox(-1, -1), (2, 3))
-    size = float(np.linalg.norm(high - low))
+    division = Division(gmsh, tags)
     gmsh.model.mesh.clear()
-    for name, value in {**OPTIONS, "Mesh.MeshSizeMax": LONGEST * size, "Mesh.MeshSizeMin": SHORTEST * size}.items():
+    gmsh.model.mesh.removeConstraints()
+    sizes = {"Mesh.MeshSizeMax": LONGEST * division.size, "Mesh.MeshSizeMin": SHORTEST * division.size}
+    for name, value in {**OPTIONS, **sizes}.items():
         gmsh.option.setNumber(name, value)
+    division.constrain(gmsh, division.equal(divisions(division)))
     try:
         with limited(TIME, f"{path}: the faces are not read in {TIME:.0f} s of processor time: take the part that is "
                      "to be formed by --part"):
@@ -56,6 +60,23 @@ def triangulate(gmsh: Any, path: Path, tags: list[int]) -> list[int]:
     except Exception:  # Gmsh raises nothing more specific
         pass
     return [tag for tag in tags if not len(gmsh.model.mesh.getElements(2, tag)[0])]
+
+
+def divisions(division: Division) -> dict[int, int]:
+    """Return the divisions of each edge: by its turn, the longest side, and on faces without a regular mesh by the largest
+    curvature of their edges, as the triangles there are about equilateral."""
+    need: defaultdict[int, int] = defaultdict(int)
+    for tag, loop in division.loops.items():
+        edges = [edge for edge in set(map(abs, loop)) if division.length[edge] > 1e-9 * division.size]
+        irregular = division.curved[tag] and tag not in division.regular
+        sharpest = max((division.turn[edge, tag] / division.length[edge] for edge in edges), default=0.0)
+        for edge in edges:
+            length = division.length[edge]
+            turn = max(division.turn[edge, tag], sharpest * length if irregular else 0.0)
+            count = min(max(turn * TURN / 360, length / (LONGEST * division.size), 1.0),
+                        max(length / (SHORTEST * division.size), division.turn[edge, tag] * TURN / 360))
+            need[edge] = max(need[edge], int(np.ceil(count - 1e-6)))
+    return need
 
 
 def elements(gmsh: Any, tags: list[int]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -67,6 +67,14 @@ class Shape:
         return self.nodes[self.triangles].mean(axis=1)
 
     @cached_property
+    def foot(self) -> np.ndarray:
+        """Return where the normals at the points on the CAD meet the flat triangles (m, 3), mm."""
+        corner = self.nodes[self.triangles]
+        flat = unit(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]))
+        away = ((self.middle - self.place) * flat).sum(axis=1) / np.maximum((self.normal * flat).sum(axis=1), 0.5)
+        return self.place + away[:, None] * self.normal
+
+    @cached_property
     def box(self) -> np.ndarray:
         """Return the least and largest coordinates (2, 3), mm."""
         used = self.nodes[np.unique(self.triangles)]

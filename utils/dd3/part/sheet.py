@@ -13,7 +13,7 @@ from dd3.tools.joints import signs
 RAYS, FEWEST = 2000, 6
 # Cosine between the normals of two points that face each other on both sides of a sheet; difference of thicknesses
 # that count as equal, of a face of a sheet, and of all.
-OPPOSITE, EQUAL, MEMBER = -0.95, 0.02, 0.1
+OPPOSITE, EQUAL, MEMBER = -0.9, 0.02, 0.25
 # Distance over the size of the part behind which a ray begins.
 LEAST = 1e-4
 # Least fraction of the area at the thickness, and largest thickness over the square root of a side's area, of a sheet.

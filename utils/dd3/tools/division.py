@@ -111,6 +111,10 @@ class Division:
             if not self.curved[tag] and factor > 1.0:
                 count = max(count, self.length[edge] / self.size * 4)
             need[edge] = max(need[edge], int(np.ceil(count * factor)))
+        return self.equal(need)
+
+    def equal(self, need: dict[int, int]) -> dict[int, int]:
+        """Return the divisions of each edge that are needed, with the same ones on opposite edges of regular faces."""
         group = {edge: edge for edge, _ in self.turn}
 
         def leader(edge: int) -> int:
@@ -125,7 +129,7 @@ class Division:
             group[leader(b)] = leader(d)
         largest: defaultdict[Any, int] = defaultdict(int)
         for edge in group:
-            largest[leader(edge)] = max(largest[leader(edge)], need[edge])
+            largest[leader(edge)] = max(largest[leader(edge)], need.get(edge, 1))
         return {edge: largest[leader(edge)] for edge in group}
 
     def direction(self, edge: int, tag: int) -> int:
@@ -140,12 +144,7 @@ class Division:
             gmsh.option.setNumber(name, value)
         gmsh.option.setNumber("Mesh.MeshSizeMax", self.size / 3)
         gmsh.option.setNumber("Mesh.MeshSizeMin", self.size * 1e-5)
-        for edge, count in self.counts().items():
-            if self.length[edge] > 1e-9 * self.size:
-                gmsh.model.mesh.setTransfiniteCurve(edge, count + 1)
-        for tag in self.regular:
-            corners = self.corners[tag]
-            gmsh.model.mesh.setTransfiniteSurface(tag, cornerTags=corners if len(corners) == 3 else [])
+        self.constrain(gmsh, self.counts())
         gmsh.model.mesh.setSizeCallback(lambda dim, tag, x, y, z, size: size / self.factor[tag].max()
                                         if dim == 2 and tag in self.factor else size)
         try:
@@ -158,6 +157,15 @@ class Division:
             return failed
         gmsh.model.mesh.setOrder(2)
         return []
+
+    def constrain(self, gmsh: Any, counts: dict[int, int]) -> None:
+        """Give the edges their divisions, and the regular faces a regular mesh."""
+        for edge, count in counts.items():
+            if self.length[edge] > 1e-9 * self.size:
+                gmsh.model.mesh.setTransfiniteCurve(edge, count + 1)
+        for tag in self.regular:
+            corners = self.corners[tag]
+            gmsh.model.mesh.setTransfiniteSurface(tag, cornerTags=corners if len(corners) == 3 else [])
 
     def refine(self, distance: np.ndarray, kink: np.ndarray, folded: set[int]) -> bool:
         """Raise the factors of faces whose relative distance or kink (face, direction) exceeds 1, or that have folded
