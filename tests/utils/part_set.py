@@ -2,21 +2,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A set of sheet parts, each with what a die engineer says of it.
 
-    part_set.py FOLDER [NAME ...]
+    part_set.py FOLDER [NAME ...]          write them as STEP, or BREP, into a folder
+    part_set.py FOLDER --table             read them, and print the table of docs/parts.md
 
-writes them as STEP, or BREP, into a folder. All are made here by Gmsh and OpenCASCADE.
+All are made here by Gmsh and OpenCASCADE.
 """
 import math
 import re
 import sys
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 import gmsh
 import numpy as np
-
+from dd3 import pages
 from dd3.gmsh_session import session
+from dd3.part.reading import Request, read_part
 from dd3.programs import made_folder
 from dd3.tools.cad import silence
 from dd3.tools.solids import along_s, edges
@@ -27,9 +30,9 @@ INCH = 25.4
 
 @dataclass
 class Expected:
-    """What is to be read of a part: `sheet`, `surface`, `block`, `flat`; thickness, mm; a direction from which it can be
-    drawn, in one stroke, or None; whether it is formed by bending alone; inner loops and notches; symmetry planes; least
-    radius inside the bends, mm, None where there is none; unit of the file."""
+    """What is to be read of a part: `sheet`, `surface`, `block`, `flat`; thickness, mm; a direction from which it can
+    be drawn, in one stroke, or None; whether it is formed by bending alone; inner loops and notches; symmetry planes;
+    least radius inside the bends, mm, None where there is none; unit of the file."""
 
     make: Callable[[], None]
     kind: str = "sheet"
@@ -45,8 +48,8 @@ class Expected:
 
 
 def outline(path, thickness, radius):
-    """Return the vertices of a strip of sheet and the radii of its corners: its path on one side, then back on the other
-    at the thickness to the left; `radius` is that inside the bends."""
+    """Return the vertices of a strip of sheet and the radii of its corners: its path on one side, then back on the
+    other at the thickness to the left; `radius` is that inside the bends."""
     path = np.array(path, float)
     along = np.diff(path, axis=0)
     along /= np.linalg.norm(along, axis=1, keepdims=True)
@@ -351,8 +354,7 @@ def tilt():
 
 
 def leaning_tray():
-    """Make a channel one of whose walls leans inwards by 6 degrees, the other outwards by 15: along x it is closed by
-    end walls across the tilted direction."""
+    """Make a channel one of whose walls leans inwards by 6 degrees, the other outwards by 15."""
     inward, outward = (20 * math.tan(math.radians(a)) for a in (6, 15))
     strip([(-30 + inward, 20), (-30, 0), (30, 0), (30 + outward, 20)], 1, 4, 90)
 
@@ -458,5 +460,31 @@ def write(folder, names=PARTS):
     return paths
 
 
+def table(folder):
+    """Print a row for each part: what it is, how it is read, processor time."""
+    heading = ["part", "made as", "faces", "read as", "punch from", "least draft, degrees", "radius inside, mm",
+               "holes, notches", "verdict", "s"]
+    rows = []
+    for name, path in write(folder).items():
+        start = time.process_time()
+        with session() as gmsh:
+            reading = read_part(gmsh, Request(path))
+        seconds = time.process_time() - start
+        one, sheet, what = reading.direction, reading.sheet, PARTS[name].make.__doc__.removeprefix("Make ").split("\n")[0]
+        free = one is not None and one.free
+        verdict = reading.faults[0].text.split(":")[0].replace("the part is ", "") if reading.faults else \
+            "bent" if reading.bends else "drawn" if free else "a tool of its own"
+        kind = f"sheet of {sheet.thickness:.4g} mm" if sheet.thickness else sheet.kind
+        rows.append([f"`{name}`", what.rstrip(".:"), f"{len(reading.shape.tags)}", "parts" if one is None else kind,
+                     one.words if one and (free or sheet.kind == "block") else "",
+                     f"{round(one.least, 6) + 0.0:.2g}" if free else "",
+                     f"{reading.inner_radius[0]:.3g}" if sheet.kind == "sheet" and np.isfinite(reading.inner_radius[0])
+                     else "", f"{len(reading.holes)}, {len(reading.notches)}" if one else "", verdict, f"{seconds:.1f}"])
+    print(pages.table(heading, rows))
+
+
 if __name__ == "__main__":
-    write(made_folder(Path(sys.argv[1])), sys.argv[2:] or PARTS)
+    if "--table" in sys.argv:
+        table(made_folder(Path(sys.argv[1])))
+    else:
+        write(made_folder(Path(sys.argv[1])), sys.argv[2:] or PARTS)

@@ -116,7 +116,7 @@ def test_tools(folder, tmp_path):
     assert "turned" not in said, said
     for name, reason in (("lipped_channel", "not in one stroke from any direction"), ("plate", "nothing is to be formed"),
                          ("s_rail", "give the thickness"), ("two_angles", "2 parts"),
-                         ("milled", "a block: give the thickness")):
+                         ("milled", "no two sides at one distance: give the thickness")):
         assert reason in call("tool", folder / f"{name}.step", tmp_path / name, expect=2)
         assert not (tmp_path / name / "punch.bez").exists()
     assert "it has a flange of its own, face 26: --faces 44-60 leaves it out" in call(

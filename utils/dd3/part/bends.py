@@ -12,18 +12,21 @@ DEVELOPABLE = 0.05
 FLAT = 0.05
 # Angle between the normals of a bend below which it is none, degrees.
 LEAST = 2.0
+# Cosine between two lines that are one, and their distance over the radius.
+ALONG, ABOUT = 0.9999, 0.05
 
 
 @dataclass
 class Bend:
     """A bend of one side: faces, or the edge where it is sharp; angle, degrees; radius of that side, mm, negative where
-    the side is the outer one; unit vector of its line."""
+    the side is the outer one; unit vector and a point of its line."""
 
     faces: list[int]
     edge: int | None
     angle: float
     radius: float
     axis: np.ndarray
+    centre: np.ndarray
 
 
 def find_bends(shape: Shape, faces: list[int]) -> list[Bend]:
@@ -41,11 +44,24 @@ def find_bends(shape: Shape, faces: list[int]) -> list[Bend]:
     if not flat or curved or at_vertex(shape, inner):
         return []
     found = [bend_of(shape, sorted(group)) for group in shape.components(bent)]
-    found += [Bend([], number, abs(edge.angle), 0.0, line_of(shape, number)) for number, edge in inner.items()
+    found += [Bend([], number, abs(edge.angle), 0.0, *line_of(shape, number)) for number, edge in inner.items()
               if edge.angle]
     found = [bend for bend in found if bend.angle >= LEAST]
     # A bend goes from rim to rim, with a flat face on each side.
-    return found if all(bend.edge or beside(shape, bend.faces, flat) == 2 for bend in found) else []
+    return joined(found) if all(bend.edge or beside(shape, bend.faces, flat) == 2 for bend in found) else []
+
+
+def joined(bends: list[Bend]) -> list[Bend]:
+    """Return bends of which those about one line, as on both sides of a hole, are one."""
+    found: list[Bend] = []
+    for bend in bends:
+        same = next((one for one in found if bend.faces and abs(one.axis @ bend.axis) > ALONG and np.linalg.norm(
+            np.cross(one.centre - bend.centre, bend.axis)) < ABOUT * abs(bend.radius)), None)
+        if same:
+            same.faces += bend.faces
+        else:
+            found.append(bend)
+    return found
 
 
 def beside(shape: Shape, group: list[int], flat: list[int]) -> int:
@@ -67,10 +83,10 @@ def ends_of(shape: Shape, edge: int) -> list[int]:
     return [int(node) for node in nodes[count == 1]]
 
 
-def line_of(shape: Shape, edge: int) -> np.ndarray:
-    """Return the unit vector along an edge."""
+def line_of(shape: Shape, edge: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the unit vector along an edge and a point of it."""
     a, b = ends_of(shape, edge)
-    return unit(shape.nodes[b] - shape.nodes[a])
+    return unit(shape.nodes[b] - shape.nodes[a]), shape.nodes[a]
 
 
 def bend_of(shape: Shape, group: list[int]) -> Bend:
@@ -82,4 +98,5 @@ def bend_of(shape: Shape, group: list[int]) -> Bend:
     turned = np.degrees(np.arctan2(normal @ np.cross(axis, mean), normal @ mean))
     curvature = shape.curvature[own]
     largest = curvature[np.arange(len(own)), np.abs(curvature).argmax(axis=1)]
-    return Bend(group, None, float(np.ptp(turned)), float(1 / np.median(largest)), axis)
+    radius = float(1 / np.median(largest))
+    return Bend(group, None, float(np.ptp(turned)), radius, axis, shape.place[own[0]] + radius * shape.normal[own[0]])

@@ -35,7 +35,7 @@ def draw(reading: Reading, path: Path) -> None:
     for column, above in enumerate((1.0, -1.0)):
         plotter.subplot(0, column)
         plotter.set_background("white")
-        plotter.add_mesh(mesh, scalars="colour", rgb=True, ambient=0.35)
+        plotter.add_mesh(mesh, scalars="colour", rgb=True, ambient=0.35, opacity=1.0 if reading.direction else 0.08)
         plotter.add_mesh(lines(pv, reading, None), color=EDGE, line_width=1.2)
         view = unit(above * up + 0.75 * side)
         label(plotter, reading, rays, view)
@@ -82,8 +82,8 @@ def label(plotter: Any, reading: Reading, rays: Rays, view: np.ndarray) -> None:
     shown = [tag for tag, place in places.items() if place is not None][:MOST_LABELS]
     style: dict[str, Any] = {"font_size": 13, "bold": False, "show_points": False, "always_visible": True, "margin": 1}
     if shown:
-        plotter.add_point_labels(np.array([places[tag] for tag in shown]), [str(tag) for tag in shown], shape_color="white",
-                                 shape_opacity=0.6, **style)
+        plotter.add_point_labels(np.array([places[tag] for tag in shown]), [str(tag) for tag in shown],
+                                 shape_color="white", shape_opacity=0.6, **style)
     edges = sorted({edge for fault in reading.faults for edge in fault.edges})
     if edges:
         plotter.add_mesh(lines(pv, reading, edges), color=FAULT, line_width=6)
@@ -99,6 +99,8 @@ def seen_place(reading: Reading, rays: Rays, tag: int, view: np.ndarray) -> np.n
         own = own[shape.normal[own] @ view > 0.05]
     if not len(own):
         return None
+    if not reading.direction:  # boxes of parts
+        return shape.centres[tag]
     own = own[np.argsort(np.linalg.norm(shape.place[own] - shape.place[own].mean(axis=0), axis=1))][:TRIED]
     ahead = AHEAD * shape.size
     seen = rays.hits(own, np.tile(view, (len(own), 1)), ahead).triangle < 0

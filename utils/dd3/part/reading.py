@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from dd3.account import Account
+from dd3.part.assembly import outlined
 from dd3.part.bends import Bend, find_bends
 from dd3.part.directions import Direction, best, candidates, judged
 from dd3.part.features import Role, inner_and_outer_radius, read_roles
@@ -22,6 +23,7 @@ from dd3.part.units import unit_of
 from dd3.tools import cad, faces
 from dd3.tools.cad_account import enter_cad
 
+MOST_PARTS = 8  # that a message names
 # Distance within which free edges are sewn without being asked, mm.
 SEWN = 0.002
 # Difference of a given thickness, relative, that is told; fraction of the area at one thickness below which it varies.
@@ -100,32 +102,42 @@ def read_part(gmsh: Any, request: Request) -> Reading:
         gmsh.model.occ.synchronize()
     parts = cad.part_names(gmsh)
     tags = faces.chosen(gmsh, path, cad.choose(path, parts, request.parts), request.faces, False)
-    shape = sampled(gmsh, path, tags)
-    rays = Rays(shape)
     solid = set(tags) <= {abs(tag) for _, tag in gmsh.model.getBoundary(gmsh.model.getEntities(3), combined=False)}
-    reading = Reading(path, unit_of(path), parts, shape, read_sheet(shape, rays), solid, notes=notes)
-    tell_faces(gmsh, reading, request)
     if len(parts) > 1 and not request.parts and not request.faces:
-        names = ", ".join(f"{number} '{name}'" for number, (name, _) in enumerate(parts, 1))
-        reading.faults.append(Fault(f"{len(parts)} parts: {names}; --part takes the one that is to be formed"))
+        reading = Reading(path, unit_of(path), parts, outlined(gmsh, parts), Sheet("parts"), solid, notes=notes)
+        reading.faults.append(Fault(f"{len(parts)} parts: {names_of(parts)}; --part takes the one that is to be "
+                                    "formed"))
     else:
+        gaps = cad.find_gaps(gmsh)
+        gmsh.model.removeEntities(gmsh.model.getEntities(3))
+        gmsh.model.removeEntities([(2, tag) for _, tag in gmsh.model.getEntities(2) if tag not in tags], recursive=True)
+        shape = sampled(gmsh, path, tags)
+        rays = Rays(shape)
+        reading = Reading(path, unit_of(path), parts, shape, read_sheet(shape, rays), solid, notes=notes)
+        tell_faces(gmsh, reading, request, gaps)
         tell_thickness(reading, request)
         read_form(reading, rays, request)
     reading.seconds = time.perf_counter() - start
     return reading
 
 
-def tell_faces(gmsh: Any, reading: Reading, request: Request) -> None:
+def names_of(parts: list[tuple[str, set[int]]]) -> str:
+    """Return the numbers and names of the first parts."""
+    names = [f"{number} '{name}'" for number, (name, _) in enumerate(parts[:MOST_PARTS], 1)]
+    return ", ".join(names) + (f" and {len(parts) - MOST_PARTS} more" if len(parts) > MOST_PARTS else "")
+
+
+def tell_faces(gmsh: Any, reading: Reading, request: Request, gaps: list[tuple[float, int, int]]) -> None:
     """Enter faces without triangles and gaps between free edges."""
     failed = reading.shape.failed
     if failed:
         edges = [edge for edge, known in reading.shape.edges.items() if set(known.faces) & set(failed)]
         reading.faults.append(Fault(f"faces {faces.spans(failed)} are damaged: Gmsh makes no triangles of them; mend "
                                     "them in the CAD program", edges=edges))
-    gaps = cad.find_gaps(gmsh)
+    gaps = [gap for gap in gaps if set(gap[1:]) <= set(reading.shape.edges)]
     if gaps:
-        edges = sorted({edge for gap in gaps for edge in gap[1:] if edge in reading.shape.edges})
-        reading.faults.append(Fault(cad.said_of_gaps(gmsh, gaps, request.sew or SEWN), edges=edges))
+        reading.faults.append(Fault(cad.said_of_gaps(gmsh, gaps, request.sew or SEWN),
+                                    edges=sorted({edge for gap in gaps for edge in gap[1:]})))
 
 
 def tell_thickness(reading: Reading, request: Request) -> None:

@@ -33,7 +33,7 @@ def sampled(gmsh: Any, path: Path, tags: list[int]) -> Shape:
     kinds = {tag: str(gmsh.model.getType(2, tag)) for tag in tags}
     areas = {tag: float(gmsh.model.occ.getMass(2, tag)) for tag in tags}
     centres = {tag: np.array(gmsh.model.occ.getCenterOfMass(2, tag)) for tag in tags}
-    edges, pieces, piece_edge = edges_of(gmsh, tags, len(nodes))
+    edges, pieces, piece_edge = edges_of(gmsh, tags)
     piece_of = find_pieces(triangles, pieces)
     corners = nodes[triangles]
     flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
@@ -46,13 +46,7 @@ def sampled(gmsh: Any, path: Path, tags: list[int]) -> Shape:
 
 def triangulate(gmsh: Any, path: Path, tags: list[int]) -> list[int]:
     """Make the triangles; return the faces of which Gmsh makes none."""
-    division = Division(gmsh, tags)
-    gmsh.model.mesh.clear()
-    gmsh.model.mesh.removeConstraints()
-    sizes = {"Mesh.MeshSizeMax": LONGEST * division.size, "Mesh.MeshSizeMin": SHORTEST * division.size}
-    for name, value in {**OPTIONS, **sizes}.items():
-        gmsh.option.setNumber(name, value)
-    division.constrain(gmsh, division.equal(divisions(division)))
+    set_sizes(gmsh, tags)
     try:
         with limited(TIME, f"{path}: the faces are not read in {TIME:.0f} s of processor time: take the part that is "
                      "to be formed by --part"):
@@ -62,9 +56,20 @@ def triangulate(gmsh: Any, path: Path, tags: list[int]) -> list[int]:
     return [tag for tag in tags if not len(gmsh.model.mesh.getElements(2, tag)[0])]
 
 
+def set_sizes(gmsh: Any, tags: list[int]) -> None:
+    """Set the options and the divisions of the edges."""
+    division = Division(gmsh, tags)
+    gmsh.model.mesh.clear()
+    gmsh.model.mesh.removeConstraints()
+    sizes = {"Mesh.MeshSizeMax": LONGEST * division.size, "Mesh.MeshSizeMin": SHORTEST * division.size}
+    for name, value in {**OPTIONS, **sizes}.items():
+        gmsh.option.setNumber(name, value)
+    division.constrain(gmsh, division.equal(divisions(division)))
+
+
 def divisions(division: Division) -> dict[int, int]:
-    """Return the divisions of each edge: by its turn, the longest side, and on faces without a regular mesh by the largest
-    curvature of their edges, as the triangles there are about equilateral."""
+    """Return the divisions of each edge: by its turn, the longest side, and on faces without a regular mesh by the
+    largest curvature of their edges, as the triangles there are about equilateral."""
     need: defaultdict[int, int] = defaultdict(int)
     for tag, loop in division.loops.items():
         edges = [edge for edge in set(map(abs, loop)) if division.length[edge] > 1e-9 * division.size]
@@ -137,7 +142,7 @@ def middle_parameters(gmsh: Any, tag: int, table: np.ndarray, corners: np.ndarra
     return uv
 
 
-def edges_of(gmsh: Any, tags: list[int], count: int) -> tuple[dict[int, Edge], np.ndarray, np.ndarray]:
+def edges_of(gmsh: Any, tags: list[int]) -> tuple[dict[int, Edge], np.ndarray, np.ndarray]:
     """Return the edges of the faces, the nodes of their pieces and the edges of these."""
     edges: dict[int, Edge] = {}
     for tag in tags:

@@ -9,7 +9,7 @@ from dd3.errors import Problem
 from dd3.gmsh_session import session
 from dd3.part.reading import Reading, Request, read_part, read_upper
 from dd3.part.shape import angle_between, unit
-from dd3.part.table import named
+from dd3.part.table import kind_of, named
 from dd3.tools.faces import spans
 from dd3.tools.moved import rotation
 
@@ -41,8 +41,7 @@ def read_for_tools(options: argparse.Namespace) -> Reading:
     options.advice = advice(reading, up)
     options.thickness = options.thickness or rounded(reading.sheet.thickness)
     if not options.thickness:
-        raise Problem(f"{options.source}: {'a surface' if reading.sheet.kind == 'surface' else 'a block'}: give the "
-                      "thickness of the sheet by --thickness")
+        raise Problem(f"{options.source}: {kind_of(reading)}: give the thickness of the sheet by --thickness")
     sides = reading.sheet.sides
     if not options.faces and reading.sheet.kind == "sheet" and reading.direction:
         upper = reading.direction.upper

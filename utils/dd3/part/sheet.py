@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a part is: a sheet with its thickness, its two sides and its rims, a surface, or a block."""
+from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
@@ -14,6 +15,8 @@ RAYS, FEWEST = 2000, 6
 # Cosine between the normals of two points that face each other on both sides of a sheet; difference of thicknesses
 # that count as equal, of a face of a sheet, and of all.
 OPPOSITE, EQUAL, MEMBER = -0.9, 0.02, 0.25
+# Fraction of a face that has to face another one to be across from it; least fraction of the area on one side.
+SHARED, ONE_SIDED = 0.15, 0.2
 # Distance over the size of the part behind which a ray begins.
 LEAST = 1e-4
 # Least fraction of the area at the thickness, and largest thickness over the square root of a side's area, of a sheet.
@@ -27,13 +30,15 @@ TINY, THIN = 5.0, 0.1
 @dataclass
 class Sheet:
     """`kind` is sheet, surface or block; thickness, mm, and the fraction of the area, rims left out, that has it; the
-    faces of both sides, of a surface or a block in the first, and of the rims."""
+    faces of both sides, of a surface or a block in the first, and of the rims; of a block whose walls have one
+    thickness but branch, that thickness, mm."""
 
     kind: str
     thickness: float | None = None
     fraction: float = 0.0
     sides: tuple[list[int], list[int]] = ([], [])
     rims: list[int] = field(default_factory=list)
+    walls: float | None = None
 
 
 def samples(shape: Shape, faces: Iterable[int], count: int = RAYS) -> tuple[np.ndarray, np.ndarray]:
@@ -65,7 +70,9 @@ def read_sheet(shape: Shape, rays: Rays) -> Sheet:
         return Sheet("block", sides=(shape.tags, []))
     equal = faces & (np.abs(distance - thickness) <= EQUAL * thickness)
     of_sides = np.isin(shape.face[chosen], sides)
-    first, second = two_sides(shape, sides, shape.face[chosen[at]], shape.face[hits.triangle[at]])
+    first, second = two_sides(shape, sides, shape.face[chosen[at]], shape.face[hits.triangle[at]], weight[at])
+    if min(sum(shape.areas[tag] for tag in side) for side in (first, second)) < ONE_SIDED * area:
+        return Sheet("block", sides=(shape.tags, []), walls=thickness)
     return Sheet("sheet", thickness, float(weight[equal & of_sides].sum() / weight[of_sides].sum()), (first, second),
                  [tag for tag in shape.tags if tag not in sides])
 
@@ -89,16 +96,18 @@ def most_common(values: np.ndarray, weights: np.ndarray) -> float:
     return float(values[max(int(np.searchsorted(total, half)) - 1, 0)])
 
 
-def two_sides(shape: Shape, faces: list[int], here: np.ndarray, there: np.ndarray) -> tuple[list[int], list[int]]:
+def two_sides(shape: Shape, faces: list[int], here: np.ndarray, there: np.ndarray, weight: np.ndarray
+             ) -> tuple[list[int], list[int]]:
     """Return the faces of both sides of a sheet: neighbours are on the same side, faces that face each other, `here`
-    and `there`, on different ones."""
+    and `there` by samples with weights, on different ones. Where these contradict, all are in the first."""
     place = {tag: i for i, tag in enumerate(faces)}
-    same = np.array([(place[a], place[b]) for a in faces for b in shape.neighbours[a] if b in place and a < b],
-                    int).reshape(-1, 2)
-    pairs = {(place[a], place[b]) for a, b in zip(here.tolist(), there.tolist())
-             if a in place and b in place and a != b}
-    across = np.array(sorted(pairs), int).reshape(-1, 2)
-    joined = np.concatenate([same, across])
+    same = [(place[a], place[b]) for a in faces for b in shape.neighbours[a] if b in place and a < b]
+    shared: defaultdict[tuple[int, int], float] = defaultdict(float)
+    for a, b, area in zip(here.tolist(), there.tolist(), weight.tolist()):
+        if a in place and b in place and a != b:
+            shared[a, b] += area
+    across = [(place[a], place[b]) for (a, b), area in shared.items() if area > SHARED * shape.areas[a]]
+    joined = np.array([*same, *across], int).reshape(-1, 2)
     sign, _, _ = signs(len(faces), joined[:, 0], joined[:, 1], np.arange(len(joined)) < len(same))
     return ([tag for tag, s in zip(faces, sign) if s > 0], [tag for tag, s in zip(faces, sign) if s < 0])
 

@@ -22,10 +22,10 @@ def summary(reading: Reading) -> list[str]:
             ("box", ", ".join(f"{name} {a:.4g} to {b:.4g}" for name, a, b
                               in zip("xyz", *rounded(shape.box, shape.size))) + " mm"),
             ("kind", kind_of(reading)),
-            ("faces", f"{len(shape.tags)}" + (f": {len(sheet.sides[0])} and {len(sheet.sides[1])} of the sides, "
-                                              f"{len(sheet.rims)} of rims" if sheet.kind == "sheet" else ""))]
-    rows += [("part", f"{number} '{name}': faces {spans(list(faces))}") for number, (name, faces)
-             in enumerate(reading.parts, 1) if len(reading.parts) > 1]
+            ("faces", faces_of(reading))]
+    if not reading.direction:
+        rows += [(f"part {number}", f"'{name}', {len(faces)} faces") for number, (name, faces)
+                 in enumerate(reading.parts, 1)]
     if reading.direction:
         rows.append(("direction", direction_line(reading.direction)))
         rows += [("", direction_line(one)) for one in reading.directions if one is not reading.direction
@@ -67,17 +67,29 @@ def kind_of(reading: Reading) -> str:
         return f"{shell}{flat}sheet of {sheet.thickness:.4g} mm ({100 * sheet.fraction:.0f} % of its sides)"
     if sheet.kind == "surface":
         return "surface, without a thickness"
-    return f"{shell}block: no two sides at one distance"
+    walls = f"walls of {sheet.walls:.4g} mm that branch" if sheet.walls else "no two sides at one distance"
+    return f"{shell}block: {walls}"
+
+
+def faces_of(reading: Reading) -> str:
+    """Return the numbers of faces in words."""
+    sheet = reading.sheet
+    if not reading.direction:
+        return str(sum(len(faces) for _, faces in reading.parts))
+    return f"{len(reading.shape.tags)}" + (f": {len(sheet.sides[0])} and {len(sheet.sides[1])} of the sides, "
+                                           f"{len(sheet.rims)} of rims" if sheet.kind == "sheet" else "")
 
 
 def direction_line(one: Direction) -> str:
     """Return a direction in words."""
     text = f"from {one.words}: "
-    if one.undercut:
-        named = spans(list(one.undercut))
-        text += f"undercut {100 * one.fraction:.2g} %, faces {named if len(named) < 40 else named[:36] + ' ...'}"
+    if one.free:
+        text += f"no undercut, least draft {rounded(np.array(one.least), 1.0):.3g} degrees"
+    elif one.undercut:
+        numbers = spans(list(one.undercut))
+        text += f"undercut {100 * one.fraction:.2g} %, faces {numbers if len(numbers) < 40 else numbers[:36] + ' ...'}"
     else:
-        text += f"no undercut, least draft {one.least + 0.0:.3g} degrees" if one.free else "judged as a tool of its own"
+        text += "as a tool of its own"
     return f"{text}, depth {one.depth:.4g} mm ({one.name})"
 
 
@@ -89,8 +101,8 @@ def role_rows(reading: Reading) -> list[tuple[str, str]]:
         if tags:
             radii = sorted({round(abs(reading.roles[tag].radius), 3) for tag in tags
                             if np.isfinite(reading.roles[tag].radius)})
-            least = min(reading.roles[tag].draft[0] for tag in tags)
-            extra = f", draft from {least + 0.0:.3g} degrees" if name == "wall" else \
+            least = rounded(np.array(min(reading.roles[tag].draft[0] for tag in tags)), 1.0)
+            extra = f", draft from {least:.3g} degrees" if name == "wall" else \
                 f", radius {some([f'{radius:.4g}' for radius in radii])} mm" if "radius" in name or name in (
                     "shoulder", "corner") else ""
             rows.append((name.replace("bottom radius", "radius"), f"{named(tags)}{extra}"))

@@ -58,6 +58,8 @@ class Division:
     @staticmethod
     def edge_turn(gmsh: Any, edge: int, tag: int) -> float:
         """Return the turn of the tangent or of the face's normal along an edge, the larger one, degrees."""
+        if gmsh.model.getType(1, edge) == "Line" and gmsh.model.getType(2, tag) == "Plane":
+            return 0.0
         low, high = gmsh.model.getParametrizationBounds(1, edge)
         t = np.linspace(low[0], high[0], SAMPLES)
         tangent = np.reshape(gmsh.model.getDerivative(1, edge, t), (-1, 3))
