@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Picture of a part with the numbers of its faces, from above and from below its press direction."""
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +12,9 @@ from dd3.part.reading import Reading
 from dd3.part.shape import unit
 
 MOST_LABELS = 250
+OBLIQUE = 0.4  # tangent of the angle by which the view turns from across the part
 # Triangles of a face that are tried for its number, and its distance from the face over the size of the part.
-TRIED, AHEAD = 8, 0.005
+TRIED, AHEAD = 12, 0.005
 FAULT, EDGE = "#d62728", "#444444"
 # Colours of rims, of undercut faces, and of draft angles from 0 to 90 degrees.
 RIM, BACK, WALLS, LEVEL = np.array([[0.60, 0.63, 0.65], [0.84, 0.15, 0.16], [0.98, 0.80, 0.36], [0.45, 0.66, 0.85]])
@@ -31,7 +33,8 @@ def draw(reading: Reading, path: Path) -> None:
     cells = np.insert(shape.triangles, 0, 3, axis=1).ravel()
     mesh = pv.PolyData(shape.nodes, cells)
     mesh.cell_data["colour"] = colours(reading)
-    side = unit(np.cross(up, [0.35, -1.0, 0.2] if abs(up[0]) < 0.9 else [0.2, -1.0, 0.35]))
+    side = side_of_view(reading, up)
+    points = shape.nodes[np.unique(shape.triangles)]
     for column, above in enumerate((1.0, -1.0)):
         plotter.subplot(0, column)
         plotter.set_background("white")
@@ -39,11 +42,11 @@ def draw(reading: Reading, path: Path) -> None:
         plotter.add_mesh(lines(pv, reading, None), color=EDGE, line_width=1.2)
         view = unit(above * up + 0.75 * side)
         label(plotter, reading, rays, view)
-        focus = shape.box.mean(axis=0)
+        focus = middle_of(points, [*across(view, up), view])
         plotter.camera_position = [focus + 3 * shape.size * view, focus, up]
         plotter.enable_parallel_projection()
         plotter.reset_camera()
-        plotter.camera.zoom(1.2)
+        plotter.camera.parallel_scale = 0.53 * max(np.ptp(points @ axis) for axis in across(view, up))
         plotter.add_text("from above" if above > 0 else "from below", font_size=9, color="black")
     try:
         plotter.screenshot(str(path))
@@ -51,6 +54,27 @@ def draw(reading: Reading, path: Path) -> None:
         raise Problem(f"{path}: {error}") from None
     finally:
         plotter.close()
+
+
+def across(view: np.ndarray, up: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the unit vectors to the right and to the top of a picture."""
+    right = unit(np.cross(up, view))
+    return right, np.cross(view, right)
+
+
+def middle_of(points: np.ndarray, axes: Sequence[np.ndarray]) -> np.ndarray:
+    """Return the middle of the box of points along axes."""
+    return np.sum([((points @ axis).max() + (points @ axis).min()) / 2 * axis for axis in axes], axis=0)
+
+
+def side_of_view(reading: Reading, up: np.ndarray) -> np.ndarray:
+    """Return the horizontal direction from which the part is seen: obliquely across its longest extent."""
+    points = reading.shape.nodes[np.unique(reading.shape.triangles)]
+    level = points - points.mean(axis=0)
+    level -= np.outer(level @ up, up)
+    along = np.linalg.eigh(level.T @ level)[1][:, 2]
+    along = along * np.sign(along[np.abs(along).argmax()])
+    return unit(np.cross(along, up) + OBLIQUE * along)
 
 
 def colours(reading: Reading) -> np.ndarray:
@@ -101,7 +125,8 @@ def seen_place(reading: Reading, rays: Rays, tag: int, view: np.ndarray) -> np.n
         return None
     if not reading.direction:  # boxes of parts
         return shape.centres[tag]
-    own = own[np.argsort(np.linalg.norm(shape.place[own] - shape.place[own].mean(axis=0), axis=1))][:TRIED]
+    own = own[np.argsort(np.linalg.norm(shape.place[own] - shape.place[own].mean(axis=0), axis=1))]
+    own = own[:: len(own) // TRIED + 1]
     ahead = AHEAD * shape.size
     seen = rays.hits(own, np.tile(view, (len(own), 1)), ahead).triangle < 0
     return shape.place[own[seen][0]] + ahead * view if seen.any() else None

@@ -103,12 +103,12 @@ def read_part(gmsh: Any, request: Request) -> Reading:
     parts = cad.part_names(gmsh)
     tags = faces.chosen(gmsh, path, cad.choose(path, parts, request.parts), request.faces, False)
     solid = set(tags) <= {abs(tag) for _, tag in gmsh.model.getBoundary(gmsh.model.getEntities(3), combined=False)}
-    if len(parts) > 1 and not request.parts and not request.faces:
+    gaps = cad.find_gaps(gmsh)  # shells with a gap between them are one part
+    if len(parts) > 1 and not gaps and not request.parts and not request.faces:
         reading = Reading(path, unit_of(path), parts, outlined(gmsh, parts), Sheet("parts"), solid, notes=notes)
         reading.faults.append(Fault(f"{len(parts)} parts: {names_of(parts)}; --part takes the one that is to be "
                                     "formed"))
     else:
-        gaps = cad.find_gaps(gmsh)
         gmsh.model.removeEntities(gmsh.model.getEntities(3))
         gmsh.model.removeEntities([(2, tag) for _, tag in gmsh.model.getEntities(2) if tag not in tags], recursive=True)
         shape = sampled(gmsh, path, tags)
