@@ -444,14 +444,17 @@ def in_inches(path):
     path.write_text(scaled)
 
 
-def write(folder, names=PARTS):
-    """Write parts into a folder; return their paths."""
+def write(folder, names=PARTS, turn=None):
+    """Write parts into a folder, turned by axis and angle (radian) on request; return their paths."""
     paths = {}
     with session(), silence():
         for name in names:
             part = PARTS[name]
             part.make()
             occ.synchronize()
+            if turn:
+                occ.rotate(gmsh.model.getEntities(3) or gmsh.model.getEntities(2), 0, 0, 0, *turn)
+                occ.synchronize()
             paths[name] = folder / f"{name}.{part.ending}"
             gmsh.write(str(paths[name]))
             gmsh.clear()

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from helpers import call
 from part_set import PARTS, write
+from scipy.spatial.transform import Rotation
 
 from dd3.gmsh_session import session
 from dd3.part.reading import Request, read_part
@@ -58,6 +59,20 @@ def test_set(folder, name):
     assert len(reading.symmetry) == part.symmetry
     if part.radius is not None:
         assert abs(reading.inner_radius[0] - part.radius) < 1e-3 * max(part.radius, 1)
+
+
+def test_turned(tmp_path):
+    """Check that parts that lie obliquely in the file are read alike, and their directions turn with them."""
+    names, axis, angle = ("hat", "tray", "wall_hole_tray", "arched_rail", "milled", "lipped_channel"), (0.6, 0.0, 0.8), 2.1
+    write(tmp_path, names, (*axis, angle))
+    turn = Rotation.from_rotvec(angle * np.array(axis))
+    for name in names:
+        part, reading = PARTS[name], reading_of(tmp_path, name)
+        assert (reading.sheet.kind, bool(reading.bends), len(reading.holes)) == (part.kind, part.bent, part.holes), name
+        assert reading.sheet.thickness is part.thickness or abs(reading.sheet.thickness / part.thickness - 1) < 1e-4
+        assert bool(reading.faults) == (part.toward is None), (name, reading.faults)
+        if part.toward:
+            assert angle_between(reading.direction.vector, turn.apply(part.toward)) < 0.1, name
 
 
 def test_command(folder, tmp_path):

@@ -26,6 +26,10 @@ OF_FACE, OF_SIDES = 0.02, 1e-3
 LEAST_AREA = 0.03
 # Least gain in draft, degrees, for which a direction is preferred to an axis of the file.
 GAIN = 5.0
+# Fraction of the largest projected area that an axis of the file needs to be preferred.
+OF_AREA = 0.97
+# Number of normals of flat faces that are tried.
+PLANES = 3
 # Draft beyond which more is no advantage, degrees.
 ENOUGH = 10.0
 # Draft of a face of a block up to which it is a wall, degrees.
@@ -144,15 +148,36 @@ def candidates(shape: Shape, sheet: Sheet) -> list[tuple[str, np.ndarray]]:
     own = shape.of(sheet.sides[0])
     area, normal = shape.area[own], shape.normal[own]
     found = [(f"axis {name}", np.array(axis)) for name, axis in AXES.items()]
-    if sheet.kind == "block":
-        return found + [(name, -axis) for name, axis in found]
+    flat = [(f"normal of face {tag}", vector) for tag, vector in plane_normals(shape, sheet.sides[0])[:PLANES]]
+    if sheet.kind == "block":  # an oblique direction would see more of it
+        return [(name, sign * vector) for sign in (1, -1) for name, vector in flat or found]
+    found += flat
     mean = area @ normal
     if np.linalg.norm(mean) > 1e-3 * area.sum():
         found.append(("mean normal", unit(mean)))
-    found += optimal(normal, mean)
+        found += optimal(normal, mean)
     away = shape.place[own] - np.average(shape.place[own], axis=0, weights=area)
     axes = np.linalg.eigh((area[:, None] * away).T @ away)[1].T
     found += [(f"principal axis {i}", axis) for i, axis in enumerate(axes, 1)]
+    return distinct(found)
+
+
+def plane_normals(shape: Shape, faces: list[int]) -> list[tuple[int, np.ndarray]]:
+    """Return the largest flat faces of different directions, with their normals, the largest area of a direction
+    first."""
+    total: list[tuple[float, int, np.ndarray]] = []
+    for tag in sorted((tag for tag in faces if shape.kinds[tag] == "Plane"), key=lambda tag: -shape.areas[tag]):
+        normal = shape.normal[shape.cells[tag][0]]
+        same = next((k for k, (_, _, other) in enumerate(total) if abs(normal @ other) > np.cos(np.radians(SAME))), None)
+        if same is None:
+            total.append((shape.areas[tag], tag, normal))
+        else:
+            total[same] = (total[same][0] + shape.areas[tag], *total[same][1:])
+    return [(tag, normal) for _, tag, normal in sorted(total, key=lambda one: -one[0])]
+
+
+def distinct(found: list[tuple[str, np.ndarray]]) -> list[tuple[str, np.ndarray]]:
+    """Return the first of the directions that differ, by more than the sign."""
     kept: list[tuple[str, np.ndarray]] = []
     for name, vector in found:
         if all(angle_between(vector, sign * other) > SAME for _, other in kept for sign in (1, -1)):
@@ -166,16 +191,17 @@ def optimal(normal: np.ndarray, mean: np.ndarray) -> list[tuple[str, np.ndarray]
 
     The former is the projection of the mean normal on the cone of these directions, the latter the point of the
     normals' convex hull that is nearest to the origin: problems of least squares with multipliers that are not
-    negative.
+    negative. The cone is a little wider, for walls without draft on all sides.
     """
     unique = np.unique(np.round(normal, 4), axis=0)
+    wider = unique + np.sin(np.radians(-UNDERCUT / 2)) * unit(mean)
     found = []
-    largest = mean + unique.T @ nnls(unique.T, -mean)[0]
+    largest = mean + wider.T @ nnls(wider.T, -mean)[0]
     if np.linalg.norm(largest) > 1e-3 * np.linalg.norm(mean):
         found.append(("largest projected area", unit(largest)))
-    multiplier = nnls(np.vstack([unique.T, np.ones(len(unique))]), np.array([0.0, 0.0, 0.0, 1.0]))[0]
-    nearest = unique.T @ multiplier
-    if np.linalg.norm(nearest) > 1e-3 * multiplier.sum():
+    multiplier = nnls(np.vstack([wider.T, np.ones(len(unique))]), np.array([0.0, 0.0, 0.0, 1.0]))[0]
+    nearest = wider.T @ multiplier
+    if np.linalg.norm(nearest) > 1e-5 * multiplier.sum():
         found.append(("largest draft", unit(nearest)))
     return found
 
@@ -192,8 +218,9 @@ def best(shape: Shape, found: list[Direction], sheet: Sheet) -> Direction:
         return min(seen or found, key=lambda one: one.fraction)
     first = max(free, key=lambda one: (min(one.least, ENOUGH), one.projected))
     axes = [one for one in free if one.name.startswith("axis")]
-    axis = max(axes, key=lambda one: (min(one.least, ENOUGH), one.projected), default=None)
-    return axis if axis and min(first.least, ENOUGH) - min(axis.least, ENOUGH) < GAIN else first
+    axis = max(axes, key=lambda one: (min(one.least, ENOUGH), one.projected), default=first)
+    lost = min(first.least, ENOUGH) - min(axis.least, ENOUGH)
+    return axis if lost < GAIN and axis.projected > OF_AREA * first.projected else first
 
 
 def relief(shape: Shape, one: Direction) -> float:
@@ -217,9 +244,12 @@ def as_tool(shape: Shape, one: Direction) -> Direction:
 
 
 def opening(shape: Shape, vector: np.ndarray, faces: list[int], rim: np.ndarray) -> float:
-    """Return the height of a rim, nodes (n,), above the middle of faces along a vector, mm: positive for a part that is
-    open towards the punch."""
+    """Return the height of a rim, nodes (n,) in order, above the middle of faces along a vector, mm: positive for a
+    part that is open towards the punch."""
     own = shape.of(faces)
     if not len(rim):
         return 0.0
-    return float((shape.nodes[rim] @ vector).mean() - np.average(shape.place[own] @ vector, weights=shape.area[own]))
+    start, end = shape.nodes[rim], shape.nodes[np.roll(rim, -1)]
+    length = np.linalg.norm(end - start, axis=1)
+    height = np.average((start + end) / 2 @ vector, weights=length)
+    return float(height - np.average(shape.place[own] @ vector, weights=shape.area[own]))

@@ -3,6 +3,7 @@
 import numpy as np
 from scipy.spatial import cKDTree
 
+from dd3.part.directions import plane_normals
 from dd3.part.rays import Rays
 from dd3.part.shape import Shape, unit
 
@@ -10,6 +11,8 @@ from dd3.part.shape import Shape, unit
 CENTRE, AREA = 1e-4, 1e-3
 # Distance of mirrored points from the triangles, which are chords, over the size; number of points.
 AWAY, POINTS = 5e-3, 200
+# Number of normals of flat faces that are tried.
+PLANES = 12
 # Cosine between a plane's normal and the press direction up to which the plane is along it.
 ALONG = 0.01
 
@@ -21,14 +24,16 @@ def symmetry_planes(shape: Shape, rays: Rays, up: np.ndarray) -> list[tuple[np.n
     area = np.array([shape.areas[tag] for tag in shape.tags])
     centre = np.array([shape.centres[tag] for tag in shape.tags])
     middle = np.average(centre, axis=0, weights=area)
-    away = shape.place - np.average(shape.place, axis=0, weights=shape.area)
-    principal = np.linalg.eigh((shape.area[:, None] * away).T @ away)[1].T
+    away = centre - middle
+    principal = np.linalg.eigh((area[:, None] * away).T @ away)[1].T
+    flat = [normal for _, normal in plane_normals(shape, shape.tags)[:PLANES]]
     tree = cKDTree(centre)
     found: list[tuple[np.ndarray, float]] = []
     points = shape.nodes[np.unique(shape.triangles)]
     points = points[:: len(points) // POINTS + 1]
-    across = [unit(np.cross(up, axis)) for axis in np.eye(3) if np.linalg.norm(np.cross(up, axis)) > 0.1]
-    for normal in [*np.eye(3), *principal, *across]:
+    tried = [*np.eye(3), *principal, *flat]
+    across = [unit(np.cross(up, axis)) for axis in tried if np.linalg.norm(np.cross(up, axis)) > 0.1]
+    for normal in [*tried, *across]:
         known = any(abs(normal @ other) > np.cos(np.radians(0.1)) for other, _ in found)
         if len(found) == 2 or known or abs(normal @ up) > ALONG:
             continue
