@@ -17,6 +17,7 @@ from pathlib import Path
 
 import gmsh
 import numpy as np
+
 from dd3 import pages
 from dd3.gmsh_session import session
 from dd3.part.reading import Request, read_part
@@ -431,8 +432,8 @@ def in_inches(path):
     for kind, last in (("CIRCLE", 1), ("CYLINDRICAL_SURFACE", 1), ("SPHERICAL_SURFACE", 1), ("TOROIDAL_SURFACE", 2),
                        ("VECTOR", 1)):
         scaled = re.sub(rf"({kind}\s*\(\s*'[^']*'\s*,\s*#\d+\s*,)([^)]*)(\)\s*;)",
-                        lambda m, last=last: m[1] + ",".join(repr(float(v) / INCH) for v in m[2].split(",")[:last]) + m[3],
-                        scaled)
+                        lambda m, last=last: m[1] + ",".join(repr(float(v) / INCH) for v in m[2].split(",")[:last])
+                        + m[3], scaled)
     unit = re.search(r"#(\d+)\s*=\s*\(\s*LENGTH_UNIT\(\)\s*NAMED_UNIT\(\*\)\s*SI_UNIT\(\.MILLI\.,\.METRE\.\)\s*\)\s*;",
                      scaled)
     number = max(int(n) for n in re.findall(r"#(\d+)\s*=", scaled))
@@ -473,7 +474,8 @@ def table(folder):
         with session() as gmsh:
             reading = read_part(gmsh, Request(path))
         seconds = time.process_time() - start
-        one, sheet, what = reading.direction, reading.sheet, PARTS[name].make.__doc__.removeprefix("Make ").split("\n")[0]
+        one, sheet = reading.direction, reading.sheet
+        what = PARTS[name].make.__doc__.removeprefix("Make ").split("\n")[0]
         free = one is not None and one.free
         verdict = reading.faults[0].text.split(":")[0].replace("the part is ", "") if reading.faults else \
             "bent" if reading.bends else "drawn" if free else "a tool of its own"
@@ -482,7 +484,8 @@ def table(folder):
                      one.words if one and (free or sheet.kind == "block") else "",
                      f"{round(one.least, 6) + 0.0:.2g}" if free else "",
                      f"{reading.inner_radius[0]:.3g}" if sheet.kind == "sheet" and np.isfinite(reading.inner_radius[0])
-                     else "", f"{len(reading.holes)}, {len(reading.notches)}" if one else "", verdict, f"{seconds:.1f}"])
+                     else "", f"{len(reading.holes)}, {len(reading.notches)}" if one else "", verdict,
+                     f"{seconds:.1f}"])
     print(pages.table(heading, rows))
 
 

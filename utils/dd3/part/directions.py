@@ -2,12 +2,11 @@
 """Press directions of a part: draft angles, undercuts, and the direction that is proposed.
 
 A sheet can be drawn in one stroke from a direction if each line along it meets the upper side once: no normal of that
-side looks away, and nothing is above it. The directions that the normals allow are a cone.
+side looks away, and nothing is above it.
 """
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.optimize import nnls
 
 from dd3.part.loops import find_loops
 from dd3.part.rays import Rays
@@ -28,17 +27,12 @@ LEAST_AREA = 0.03
 GAIN = 5.0
 # Fraction of the largest projected area that an axis of the file needs to be preferred.
 OF_AREA = 0.97
-# Number of normals of flat faces that are tried.
-PLANES = 3
 # Draft beyond which more is no advantage, degrees.
 ENOUGH = 10.0
 # Draft of a face of a block up to which it is a wall, degrees.
 BLOCK_WALL = 2.0
 # Height of the rim over the size of the part up to which a part is open to no side.
 LEVEL = 1e-3
-# Angle up to which two candidates are one, degrees.
-SAME = 1.0
-AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
 @dataclass
@@ -69,9 +63,9 @@ class Direction:
     @property
     def words(self) -> str:
         """Return the direction in words: `+z`, or its components."""
-        for name, axis in AXES.items():
+        for name, axis in zip("xyz", np.eye(3)):
             for sign, value in (("+", 1.0), ("-", -1.0)):
-                if angle_between(self.vector, value * np.array(axis)) < 0.05:
+                if angle_between(self.vector, value * axis) < 0.05:
                     return sign + name
         return self.components
 
@@ -141,69 +135,6 @@ def visible(shape: Shape, rays: Rays, vector: np.ndarray) -> list[int]:
     hits = rays.hits(chosen, np.tile(vector, (len(chosen), 1)), START_SIZE * shape.size * shape.normal[chosen])
     seen = looks & (np.abs(hits.normal @ vector) <= np.sin(np.radians(GRAZING)))
     return mostly(shape, chosen, weight, seen)
-
-
-def candidates(shape: Shape, sheet: Sheet) -> list[tuple[str, np.ndarray]]:
-    """Return names and unit vectors of directions to be tried, those of the file's axes first."""
-    own = shape.of(sheet.sides[0])
-    area, normal = shape.area[own], shape.normal[own]
-    found = [(f"axis {name}", np.array(axis)) for name, axis in AXES.items()]
-    flat = [(f"normal of face {tag}", vector) for tag, vector in plane_normals(shape, sheet.sides[0])[:PLANES]]
-    if sheet.kind == "block":  # an oblique direction would see more of it
-        return [(name, sign * vector) for sign in (1, -1) for name, vector in flat or found]
-    found += flat
-    mean = area @ normal
-    if np.linalg.norm(mean) > 1e-3 * area.sum():
-        found.append(("mean normal", unit(mean)))
-        found += optimal(normal, mean)
-    away = shape.place[own] - np.average(shape.place[own], axis=0, weights=area)
-    axes = np.linalg.eigh((area[:, None] * away).T @ away)[1].T
-    found += [(f"principal axis {i}", axis) for i, axis in enumerate(axes, 1)]
-    return distinct(found)
-
-
-def plane_normals(shape: Shape, faces: list[int]) -> list[tuple[int, np.ndarray]]:
-    """Return the largest flat faces of different directions, with their normals, the largest area of a direction
-    first."""
-    total: list[tuple[float, int, np.ndarray]] = []
-    for tag in sorted((tag for tag in faces if shape.kinds[tag] == "Plane"), key=lambda tag: -shape.areas[tag]):
-        normal = shape.normal[shape.cells[tag][0]]
-        same = next((k for k, (_, _, other) in enumerate(total) if abs(normal @ other) > np.cos(np.radians(SAME))), None)
-        if same is None:
-            total.append((shape.areas[tag], tag, normal))
-        else:
-            total[same] = (total[same][0] + shape.areas[tag], *total[same][1:])
-    return [(tag, normal) for _, tag, normal in sorted(total, key=lambda one: -one[0])]
-
-
-def distinct(found: list[tuple[str, np.ndarray]]) -> list[tuple[str, np.ndarray]]:
-    """Return the first of the directions that differ, by more than the sign."""
-    kept: list[tuple[str, np.ndarray]] = []
-    for name, vector in found:
-        if all(angle_between(vector, sign * other) > SAME for _, other in kept for sign in (1, -1)):
-            kept.append((name, vector))
-    return kept
-
-
-def optimal(normal: np.ndarray, mean: np.ndarray) -> list[tuple[str, np.ndarray]]:
-    """Return the direction of the largest projected area and that of the largest least draft, of those from which no
-    normal looks away; none if each direction has one that does.
-
-    The former is the projection of the mean normal on the cone of these directions, the latter the point of the
-    normals' convex hull that is nearest to the origin: problems of least squares with multipliers that are not
-    negative. The cone is a little wider, for walls without draft on all sides.
-    """
-    unique = np.unique(np.round(normal, 4), axis=0)
-    wider = unique + np.sin(np.radians(-UNDERCUT / 2)) * unit(mean)
-    found = []
-    largest = mean + wider.T @ nnls(wider.T, -mean)[0]
-    if np.linalg.norm(largest) > 1e-3 * np.linalg.norm(mean):
-        found.append(("largest projected area", unit(largest)))
-    multiplier = nnls(np.vstack([wider.T, np.ones(len(unique))]), np.array([0.0, 0.0, 0.0, 1.0]))[0]
-    nearest = wider.T @ multiplier
-    if np.linalg.norm(nearest) > 1e-5 * multiplier.sum():
-        found.append(("largest draft", unit(nearest)))
-    return found
 
 
 def best(shape: Shape, found: list[Direction], sheet: Sheet) -> Direction:

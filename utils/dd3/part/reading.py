@@ -11,7 +11,8 @@ import numpy as np
 from dd3.account import Account
 from dd3.part.assembly import outlined
 from dd3.part.bends import Bend, find_bends
-from dd3.part.directions import Direction, best, candidates, judged
+from dd3.part.candidates import candidates
+from dd3.part.directions import Direction, best, judged
 from dd3.part.features import Role, inner_and_outer_radius, read_roles
 from dd3.part.loops import Hole, Loop, Notch, find_loops, find_notches, hole_of
 from dd3.part.rays import Rays
@@ -46,6 +47,7 @@ class Request:
     thickness: float | None = None
     scale: float = 1.0
     sew: float | None = None
+    tolerance: float = SEWN
 
 
 @dataclass
@@ -96,7 +98,7 @@ def read_part(gmsh: Any, request: Request) -> Reading:
     cad.load(gmsh, path)
     account = Account()
     enter_cad(path, account, len(gmsh.model.getEntities(2)))
-    notes = cad.sew(gmsh, path, request.sew or SEWN, request.sew is not None)
+    notes = cad.sew(gmsh, path, request.sew or request.tolerance, request.sew is not None)
     if request.scale != 1.0:
         gmsh.model.occ.dilate(gmsh.model.getEntities(), 0, 0, 0, *[request.scale] * 3)
         gmsh.model.occ.synchronize()
@@ -136,7 +138,7 @@ def tell_faces(gmsh: Any, reading: Reading, request: Request, gaps: list[tuple[f
                                     "them in the CAD program", edges=edges))
     gaps = [gap for gap in gaps if set(gap[1:]) <= set(reading.shape.edges)]
     if gaps:
-        reading.faults.append(Fault(cad.said_of_gaps(gmsh, gaps, request.sew or SEWN),
+        reading.faults.append(Fault(cad.said_of_gaps(gmsh, gaps, request.sew or request.tolerance),
                                     edges=sorted({edge for gap in gaps for edge in gap[1:]})))
 
 

@@ -28,7 +28,7 @@ def read_for_tools(options: argparse.Namespace) -> Reading:
     up = rotation(options.rotate).T @ UP if options.toward is None else unit(np.array(options.toward, float))
     with session() as gmsh:
         reading = read_part(gmsh, Request(options.source, options.part, None, up, options.thickness, options.scale,
-                                          options.sew))
+                                          options.sew, options.tolerance))
     if reading.direction is None or options.faces:  # with faces of the user's choice the part is not judged
         reading.faults = reading.faults if reading.direction is None else []
     elif not given and reading.best is not None and turns(reading):

@@ -19,8 +19,9 @@ OPPOSITE, EQUAL, MEMBER = -0.9, 0.02, 0.25
 SHARED, ONE_SIDED = 0.15, 0.2
 # Distance over the size of the part behind which a ray begins.
 LEAST = 1e-4
-# Least fraction of the area at the thickness, and largest thickness over the square root of a side's area, of a sheet.
-SHEET, THICKEST = 0.6, 0.3
+# Of a sheet: least fraction of the area of its sides, of that at one thickness of the sides, and largest thickness over
+# the square root of a side's area.
+SHEET, UNIFORM, THICKEST = 0.6, 0.4, 0.3
 # Angle between all normals of a side up to which the part is flat, degrees.
 FLAT = 0.5
 # Diagonal and thickness below which, mm, the unit may be another.
@@ -70,11 +71,13 @@ def read_sheet(shape: Shape, rays: Rays) -> Sheet:
         return Sheet("block", sides=(shape.tags, []))
     equal = faces & (np.abs(distance - thickness) <= EQUAL * thickness)
     of_sides = np.isin(shape.face[chosen], sides)
+    fraction = float(weight[equal & of_sides].sum() / weight[of_sides].sum())
+    if fraction < UNIFORM:
+        return Sheet("block", sides=(shape.tags, []))
     first, second = two_sides(shape, sides, shape.face[chosen[at]], shape.face[hits.triangle[at]], weight[at])
     if min(sum(shape.areas[tag] for tag in side) for side in (first, second)) < ONE_SIDED * area:
         return Sheet("block", sides=(shape.tags, []), walls=thickness)
-    return Sheet("sheet", thickness, float(weight[equal & of_sides].sum() / weight[of_sides].sum()), (first, second),
-                 [tag for tag in shape.tags if tag not in sides])
+    return Sheet("sheet", thickness, fraction, (first, second), [tag for tag in shape.tags if tag not in sides])
 
 
 def mostly(shape: Shape, chosen: np.ndarray, weight: np.ndarray, true: np.ndarray) -> list[int]:

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial import cKDTree
 
-from dd3.part.directions import plane_normals
+from dd3.part.candidates import plane_normals
 from dd3.part.rays import Rays
 from dd3.part.shape import Shape, unit
 
