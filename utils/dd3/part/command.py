@@ -20,6 +20,7 @@ from dd3.errors import Problem, run
 from dd3.gmsh_session import session
 from dd3.part import picture, table
 from dd3.part.reading import Reading, Request, read_part
+from dd3.progress import Progress
 from dd3.tools.cad import SUFFIXES
 from dd3.tools.limits import supervised
 
@@ -73,9 +74,11 @@ def convert(words: Sequence[str]) -> None:
         if getattr(options, name) is not None and not 0 < getattr(options, name) < np.inf:
             parser.error(f"--{name} takes a positive number")
     folder = options.target or Path(f"{options.source.stem}_reading")
+    progress = Progress(options.source.name)
     with session() as gmsh:
         reading = read_part(gmsh, Request(options.source, options.part, options.faces, options.toward,
-                                          options.thickness, options.scale, options.sew))
+                                          options.thickness, options.scale, options.sew), progress)
+    progress.end()
     say(reading, folder)
     write_reading(reading, folder)
     if reading.faults:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reading of a part: all that is found of it before tools are made."""
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -91,11 +91,12 @@ class Reading:
     seconds: float = 0.0
 
 
-def read_part(gmsh: Any, request: Request) -> Reading:
+def read_part(gmsh: Any, request: Request, progress: Callable[[float], None] = lambda fraction: None) -> Reading:
     """Return the reading of a part."""
     start = time.perf_counter()
     path = request.path
     cad.load(gmsh, path)
+    progress(0.3)
     account = Account()
     enter_cad(path, account, len(gmsh.model.getEntities(2)))
     notes = cad.sew(gmsh, path, request.sew or request.tolerance, request.sew is not None)
@@ -103,6 +104,7 @@ def read_part(gmsh: Any, request: Request) -> Reading:
         gmsh.model.occ.dilate(gmsh.model.getEntities(), 0, 0, 0, *[request.scale] * 3)
         gmsh.model.occ.synchronize()
     parts = cad.part_names(gmsh)
+    progress(0.5)
     tags = faces.chosen(gmsh, path, cad.choose(path, parts, request.parts), request.faces, False)
     solid = set(tags) <= {abs(tag) for _, tag in gmsh.model.getBoundary(gmsh.model.getEntities(3), combined=False)}
     gaps = cad.find_gaps(gmsh)  # shells with a gap between them are one part
@@ -114,6 +116,7 @@ def read_part(gmsh: Any, request: Request) -> Reading:
         gmsh.model.removeEntities(gmsh.model.getEntities(3))
         gmsh.model.removeEntities([(2, tag) for _, tag in gmsh.model.getEntities(2) if tag not in tags], recursive=True)
         shape = sampled(gmsh, path, tags)
+        progress(0.8)
         rays = Rays(shape)
         reading = Reading(path, unit_of(path), parts, shape, read_sheet(shape, rays), solid, notes=notes)
         tell_faces(gmsh, reading, request, gaps)

@@ -10,6 +10,7 @@ from dd3.gmsh_session import session
 from dd3.part.reading import Reading, Request, read_part, read_upper
 from dd3.part.shape import angle_between, unit
 from dd3.part.table import kind_of, named
+from dd3.progress import Progress
 from dd3.tools.faces import spans
 from dd3.tools.moved import rotation
 
@@ -26,9 +27,11 @@ def read_for_tools(options: argparse.Namespace) -> Reading:
     rotation."""
     given = options.toward is not None or bool(options.rotate)
     up = rotation(options.rotate).T @ UP if options.toward is None else unit(np.array(options.toward, float))
+    progress = Progress(options.source.name)
     with session() as gmsh:
         reading = read_part(gmsh, Request(options.source, options.part, None, up, options.thickness, options.scale,
-                                          options.sew, options.tolerance))
+                                          options.sew, options.tolerance), progress)
+    progress.end()
     if reading.direction is None or options.faces:  # with faces of the user's choice the part is not judged
         reading.faults = reading.faults if reading.direction is None else []
     elif not given and reading.best is not None and turns(reading):
