@@ -33,6 +33,7 @@ REPORT = studies.ROOT / "docs" / "reports" / "examples.md"
 NOW, BEFORE, FINE, UNIFORM = "refined", "uniform, before", "uniform, fine", "uniform"
 FINE_REFINED = "refined, fine"
 BEYOND = 0.075  # part of the travel from which forces are compared
+LEAST = 0.05  # least force that is compared at a travel, of the largest one
 HEAD = ["example", "mesh", "elements", "increments", "cut-backs", "iterations", "CPU seconds", "of the fine mesh",
         "force, %", "force, rms, %", "thickness, %", "springback, mm", "springback, %", "shape, mm", "twist, degrees", "warnings"]
 
@@ -90,7 +91,8 @@ class Result:
         square over that of the other one."""
         travels = np.linspace(BEYOND*self.travel[-1], self.travel[-1], 400)
         mine, force = (np.interp(travels, result.travel, result.force) for result in (self, other))
-        return np.abs(mine/force - 1).max(), np.sqrt(((mine - force)**2).mean()/(force**2).mean())
+        loaded = force > LEAST*force.max()
+        return np.abs(mine[loaded]/force[loaded] - 1).max(), np.sqrt(((mine - force)**2).mean()/(force**2).mean())
 
     def free(self):
         """Return the middle of the columns of nodes in the blank along x and y, and of the free sheet, mm."""
