@@ -152,5 +152,7 @@ def test_tools(folder, tmp_path):
                          ("milled", "no two sides at one distance: give the thickness")):
         assert reason in call("tool", folder / f"{name}.step", tmp_path / name, expect=2)
         assert not (tmp_path / name / "punch.bez").exists()
+    said = call("tool", folder / "wall_hole_tray.step", tmp_path / "hole", expect=2)
+    assert "holes beside face 17 are not filled: close them in the CAD program" in said, said
     assert "it has a flange of its own, face 26: --faces 44-60 leaves it out" in call(
         "tool", folder / "own_flange.step", tmp_path / "own", expect=2)

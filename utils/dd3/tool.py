@@ -335,27 +335,39 @@ def make_set(options: argparse.Namespace, command: str) -> dict[str, report.Repo
     with session() as gmsh:
         tools = tool_set.made(gmsh, options, progress)
     progress.end()
-    folder, reports = options.target or Path(), {}
+    reports = judge_set(tools, options)
+    if any(result.errors for result in reports.values()):
+        cause = setup.likely_cause(reading)
+        next(iter(reports.values())).errors[:0] = [cause] if cause else []
+    elif options.target:
+        write_set(tools, options, material, command)
+        reports[str(options.target / DRAW)] = report.Report([f"  {'travel':<10} {tools.travel:.6g} mm"])
+    return reports
+
+
+def judge_set(tools: tool_set.ToolSet, options: argparse.Namespace) -> dict[str, report.Report]:
+    """Return the reports on the tools of a part by the names of their files, and draw them."""
+    reports = {}
     for name, surface in tools.surfaces.items():
         result, joints = report.judge(surface, options, 0)
-        reports[str(folder / f"{name}.bez")] = result
+        reports[str((options.target or Path()) / f"{name}.bez")] = result
         if options.picture:
             picture.draw(surface, joints, options.picture.with_stem(f"{options.picture.stem}_{name}"))
-    for name, distance in tools.distance.items():
-        lines, errors = judge_distance(tools.surfaces[name], distance, options, "measured")
-        result = reports[str(folder / f"{name}.bez")]
-        result.errors += errors
-        for line in lines + (tools.lines if name == "die" else []):
-            result.add(*line)
-    if options.target and not any(result.errors for result in reports.values()):
-        folder.mkdir(parents=True, exist_ok=True)
-        for name, surface in tools.surfaces.items():
-            write(folder / f"{name}.bez", surface, [f"{name} of {options.source.name}: {command}"])
-        target = folder / DRAW
-        text = set_deck.deck(options, material, tools.plan, tools.travel, tools.area, command)
-        target.write_text(text, encoding="utf-8")
-        reports[str(target)] = report.Report([f"  {'travel':<10} {tools.travel:.6g} mm"])
+        if name in tools.distance:
+            lines, errors = judge_distance(surface, tools.distance[name], options, "measured")
+            result.errors += errors
+            for line in lines + (tools.lines if name == "die" else []):
+                result.add(*line)
     return reports
+
+
+def write_set(tools: tool_set.ToolSet, options: argparse.Namespace, material: str, command: str) -> None:
+    """Write the tools of a part and the input file."""
+    options.target.mkdir(parents=True, exist_ok=True)
+    for name, surface in tools.surfaces.items():
+        write(options.target / f"{name}.bez", surface, [f"{name} of {options.source.name}: {command}"])
+    text = set_deck.deck(options, material, tools.plan, tools.travel, tools.area, command)
+    (options.target / DRAW).write_text(text, encoding="utf-8")
 
 
 def main(words: Sequence[str] | None = None) -> None:

@@ -85,6 +85,16 @@ def advice(reading: Reading, up: np.ndarray) -> str:
     return ""
 
 
+def likely_cause(reading: Reading) -> str | None:
+    """Return what of the part most likely makes faulty tools: holes in walls and notches, from which walls go on
+    upwards."""
+    level = {"floor", "step", "island", "flange"}
+    beside = sorted({tag for hole in reading.holes for tag in hole.loop.faces
+                     if tag in reading.roles and reading.roles[tag].name not in level})
+    what = ([f"holes beside {named(beside)}"] if beside else []) + (["notches of the rim"] if reading.notches else [])
+    return f"{' and '.join(what)} are not filled: close them in the CAD program" if what else None
+
+
 def turn_to_z(vector: np.ndarray) -> list[list[float]]:
     """Return the rotation, axis and degrees, that turns a vector to z, none if it is z."""
     angle = float(angle_between(vector, UP))
