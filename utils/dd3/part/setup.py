@@ -5,9 +5,8 @@ import argparse
 
 import numpy as np
 
-from dd3.errors import Problem
 from dd3.gmsh_session import session
-from dd3.part.reading import Reading, Request, read_part, read_upper
+from dd3.part.reading import Fault, Reading, Request, read_part, read_upper
 from dd3.part.shape import angle_between, unit
 from dd3.part.table import kind_of, named
 from dd3.progress import Progress
@@ -19,6 +18,8 @@ UP = np.array([0.0, 0.0, 1.0])
 LEVEL = 0.01
 # Angle from which the direction that is proposed is another one, degrees.
 OTHER = 60.0
+# That from which it is the other side, degrees.
+REVERSED = 135.0
 
 
 def read_for_tools(options: argparse.Namespace) -> Reading:
@@ -39,12 +40,10 @@ def read_for_tools(options: argparse.Namespace) -> Reading:
         up = reading.best.vector
     if options.toward is not None or not given:
         options.rotate = turn_to_z(up)
-    if reading.faults:
-        return reading
-    options.advice = advice(reading, up)
     options.thickness = options.thickness or rounded(reading.sheet.thickness)
-    if not options.thickness:
-        raise Problem(f"{options.source}: {kind_of(reading)}: give the thickness of the sheet by --thickness")
+    if not options.thickness and not reading.faults:
+        reading.faults.append(Fault(f"{kind_of(reading)}: give the thickness of the sheet by --thickness"))
+    options.advice = advice(reading, up)
     sides = reading.sheet.sides
     if not options.faces and reading.sheet.kind == "sheet" and reading.direction:
         upper = reading.direction.upper
@@ -61,7 +60,7 @@ def turns(reading: Reading) -> bool:
     """Tell whether another direction is to be taken than z, which has an undercut or is that of the closed side."""
     direction, best = reading.direction, reading.best
     assert direction and best
-    closed = bool(angle_between(direction.vector, best.vector) > 179.0)
+    closed = bool(angle_between(direction.vector, best.vector) > REVERSED)
     return reading.sheet.kind != "block" and best.free and (closed or not direction.free)
 
 
