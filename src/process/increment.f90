@@ -187,7 +187,7 @@ contains
     committed%sheet%enhanced = 0.0_wp
     call set_next_r_cap(committed, stepper%attempt)
     call weaken_viscous(committed%term, stepper%attempt%course%iterations, &
-        stepper%attempt%viscous_range(2))
+        stepper%attempt%viscous_range)
   end subroutine accept_increment
 
 end module dd3_process_increment

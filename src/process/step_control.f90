@@ -5,7 +5,7 @@ module dd3_process_step_control
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t
   use dd3_model_state, only : state_t
-  use dd3_model_terms_viscous, only : stronger
+  use dd3_model_terms_viscous, only : goes_on, stronger
   use dd3_process_newton, only : newton_course_t
   use dd3_process_norm, only : residual_t
   use dd3_process_open_edges, only : passage_t
@@ -77,8 +77,8 @@ module dd3_process_step_control
 contains
 
   !> Reduce r for another attempt after one that failed. In a release the viscous forces get
-  !> stronger, and those that held the contact forces that are left keep r, unless the phase would
-  !> end with them.
+  !> stronger, and those that would go on in the next increment keep r, unless the phase would end
+  !> with them.
   pure subroutine cut_back(attempt, again)
     type(attempt_t), intent(inout) :: attempt
     !> False if r would fall below its minimum.
@@ -88,8 +88,8 @@ contains
 
     factor = cutback_factor
     if (attempt%releases) then
-      if (attempt%viscosity >= attempt%viscous_range(2) .and. attempt%number <= most_stronger &
-          .and. .not. attempt%ends_phase) factor = 1.0_wp
+      if (goes_on(attempt%viscosity, attempt%viscous_range) .and. .not. attempt%ends_phase &
+          .and. attempt%number <= most_stronger) factor = 1.0_wp
       attempt%viscosity = stronger(attempt%viscosity, attempt%viscous_range)
     end if
     again = attempt%limit%r*factor >= merge(release_min, cutback_min, attempt%releases)

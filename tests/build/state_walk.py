@@ -7,7 +7,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FIXED = {"drawbeads_t": ["point", "force_before", "path_before", "load_before", "total_before"],
-         "viscous_t": ["coefficient", "before"]}  # set at the start of each increment or attempt
+         "floating_t": ["support"], "viscous_t": ["coefficient", "before"]}  # set at the start of each increment or attempt
 
 
 def components(path, type_name):

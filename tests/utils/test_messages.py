@@ -21,7 +21,7 @@ NAMES = [(name, *other) for name, row in COMMANDS.items()
     (("study", "report", "page.md", "--work", "incomplete"), "is missing; `dd3 study run`"),
     (("study", "run", "--program", "nosuch"), "nosuch: no such program"),
     (("study", "run", "--sets"), "--sets: expected one argument"),
-    (("study", "run", "--cores", "x"), "--cores: takes a number"), ((), "a command is missing; expected tool, import"),
+    (("study", "run", "--cores", "x"), "--cores: takes a number"), ((), "a command is missing; expected part, tool, import"),
     (("tol",), "no command 'tol'; did you mean 'tool'?"), (("plot", "increment"), "did you mean 'increments'?"),
     (("plot", "sheet", "job.dat", "--set", "x"), "--set: takes NAME=VALUE")))
 def test_messages(tmp_path, words, said):

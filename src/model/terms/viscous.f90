@@ -22,7 +22,7 @@ module dd3_model_terms_viscous
   implicit none
   private
   public :: viscous_t, set_viscous, has_viscous, viscous_strength, viscous_work
-  public :: viscous_range, stronger, weaken_viscous
+  public :: viscous_range, stronger, goes_on, weaken_viscous
 
   !> The term.
   type, extends(term_t) :: viscous_t
@@ -149,12 +149,21 @@ contains
     stronger = strength*merge(factor, growth, strength*factor <= range(2)*(1.0_wp + epsilon(factor)))
   end function stronger
 
+  !> Whether viscous forces go on in the next increment: those above the strength after the second
+  !> failure.
+  pure logical function goes_on(strength, range)
+    !> N/mm.
+    real(wp), intent(in) :: strength, range(2)
+
+    goes_on = strength > sqrt(product(range))*(1.0_wp + sqrt(epsilon(strength)))
+  end function goes_on
+
   !> Reduce the strength of the next increment by the iterations of the one accepted.
-  subroutine weaken_viscous(terms, iterations, least)
+  subroutine weaken_viscous(terms, iterations, range)
     type(term_box_t), intent(inout) :: terms(:)
     integer, intent(in) :: iterations
-    !> Strength below which there is none, N/mm.
-    real(wp), intent(in) :: least
+    !> Of `viscous_range`, N/mm.
+    real(wp), intent(in) :: range(2)
 
     integer :: k
 
@@ -163,7 +172,7 @@ contains
       type is (viscous_t)
         if (.not. this%strength > 0.0_wp) return
         this%strength = this%strength*min(1.0_wp, (real(iterations, wp)/many)**power)
-        if (this%strength < least) this%strength = 0.0_wp
+        if (.not. goes_on(this%strength, range)) this%strength = 0.0_wp
       end select
     end do
   end subroutine weaken_viscous
