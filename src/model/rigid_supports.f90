@@ -33,7 +33,7 @@ contains
     !> Factors on the components in the choice, `(3, n_node)`; 1 by default.
     real(wp), intent(in), optional :: weight(:, :)
 
-    real(wp) :: worth(3, size(x, 2))
+    real(wp) :: factor(3, size(x, 2))
     logical :: allowed(size(x, 2))
     type(rigid_motion_t) :: body
     real(wp) :: projector(6, 6), row(6), component, other
@@ -45,11 +45,11 @@ contains
     allocate (support(2, n))
     allowed = .true.
     if (present(bound)) allowed(bound) = .false.
-    worth = 1.0_wp
-    if (present(weight)) worth = weight
+    factor = 1.0_wp
+    if (present(weight)) factor = weight
     do k = 1, n
-      call find_largest(body, x, allowed, worth, projector, place, component)
-      call find_largest(body, x, allowed .and. any(prescribed, dim=1), worth, projector, near, &
+      call find_largest(body, x, allowed, factor, projector, place, component)
+      call find_largest(body, x, allowed .and. any(prescribed, dim=1), factor, projector, near, &
           other)
       if (other >= sufficient*component) place = near
       support(:, k) = place
@@ -60,13 +60,13 @@ contains
   end subroutine choose_supports
 
   !> Find the nodal direction with the largest component in the free motions.
-  subroutine find_largest(body, x, allowed, worth, projector, place, component)
+  subroutine find_largest(body, x, allowed, weight, projector, place, component)
     type(rigid_motion_t), intent(in) :: body
     real(wp), intent(in) :: x(:, :)
     !> Nodes to choose from.
     logical, intent(in) :: allowed(:)
     !> Factors on the components, `(3, n_node)`.
-    real(wp), intent(in) :: worth(:, :)
+    real(wp), intent(in) :: weight(:, :)
     !> Projection onto the free motions.
     real(wp), intent(in) :: projector(6, 6)
     !> Node and axis.
@@ -81,7 +81,7 @@ contains
     do node = 1, size(x, 2)
       if (.not. allowed(node)) cycle
       do axis = 1, 3
-        this = worth(axis, node) &
+        this = weight(axis, node) &
             *norm2(matmul(projector, body%condition(x(:, node), identity(:, axis))))
         if (this <= component*(1.0_wp + equal)) cycle
         component = this

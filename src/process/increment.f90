@@ -76,7 +76,7 @@ contains
       if (attempt%releases) then
         equilibrium%far = 0.0_wp
         equilibrium%patience = release_patience
-        call set_viscous(trial%term, model, attempt%viscosity)
+        if (attempt%number > 1) call set_viscous(trial%term, model, attempt%viscosity)
       end if
       equilibrium%system%contact%turn_limited = attempt%number > 1 .and. attempt%after_failure
       trial%increment = committed%increment + 1

@@ -76,19 +76,11 @@ contains
     end do
   end subroutine set_viscous
 
-  !> Whether viscous forces act.
+  !> Whether viscous forces act in the attempt.
   pure logical function has_viscous(terms)
     type(term_box_t), intent(in) :: terms(:)
 
-    integer :: k
-
-    has_viscous = .false.
-    do k = 1, size(terms)
-      select type (this => terms(k)%of)
-      type is (viscous_t)
-        has_viscous = allocated(this%coefficient)
-      end select
-    end do
+    has_viscous = viscous_strength(terms) > 0.0_wp
   end function has_viscous
 
   !> Return the strength, N/mm.
