@@ -12,11 +12,13 @@ import sys
 from typing import NamedTuple
 
 import numpy as np
+from scipy.spatial import cKDTree
 
-from dd3.errors import run
+from dd3.errors import Problem, run
 from dd3.fields import Fields
 from dd3.pages import put_table
 from dd3.run import read_job
+from dd3.sheet import Sheet
 from dd3.springback import best_fit
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -25,6 +27,7 @@ from bench import Bench  # noqa: E402
 from studies import arguments, table  # noqa: E402
 
 INPUTS = ROOT / "input_files"
+NEAR = 1e-6  # distance of nodes that are one, mm
 NO_GRAVITY = "  gravity = 0 0 0\n"
 SIDES = {"die": "1", "holder": "-1", "punch": "-1"}  # of the sheet, from the tools
 
@@ -48,6 +51,9 @@ PARTS = {"draw bending, holder 2.45 kN": Part("draw_bending/draw_bending.dat", {
          "hat": Part("hat/hat.dat", {}, 70, NO_GRAVITY, strip=True),
          "rail, DP600": Part("rail/rail.dat", {}, 50),
          "rail, DC06": Part("rail/rail.dat", {"material": "dc06"}, 50),
+         "rail, DP600, 30 x 18 elements": Part("rail/rail.dat", {"levels": 0, "divisions": "30 18 1"}, 50),
+         "rail, DC06, 30 x 18 elements": Part("rail/rail.dat", {"material": "dc06", "levels": 0,
+                                                                 "divisions": "30 18 1"}, 50),
          "tray": Part("tutorial/tray.dat", {"length": 80, "width": 60, "divisions": "18 14 1", "holder": -7500}, 70,
                       mirror="xy", cad=True),
          "hood": Part("hood/hood.dat", {"levels": 0, "divisions": "25 20 1"}, 110, NO_GRAVITY, mirror="xy", cad=True)}
@@ -102,10 +108,18 @@ def deck(part, order):
     return text[:start] + phases[:first] + part.keys + phases[first:] + text[end:]
 
 
-def last(folder):
-    """Return the positions of the nodes at the end of a run, mm."""
-    fields = Fields(folder)
-    return fields.points(fields.count - 1)
+def shapes_of(folders):
+    """Return the positions at the ends of runs of the nodes of the first one, mm, and their areas, mm2: releases may
+    divide elements."""
+    drawn = Sheet(folders[0])
+    place, found = drawn.initial(drawn.last), []
+    for folder in folders:
+        sheet = Sheet(folder)
+        distance, node = cKDTree(sheet.initial(sheet.last)).query(place)
+        if distance.max() > NEAR:
+            raise Problem(f"{folder}: a node of {folders[0]} is missing")
+        found.append(sheet.points(sheet.last)[node])
+    return found, drawn.areas(drawn.last)
 
 
 def slope(folder):
@@ -117,9 +131,10 @@ def slope(folder):
     return float(np.degrees(np.arctan2(rim[2] - first[2], rim[0] - first[0])))
 
 
-def distance_of(points, others, mirror=""):
+def distance_of(points, others, areas, mirror=""):
     """Return the root mean square of the distances of nodes after the best rigid motion, mm."""
-    return float(np.sqrt(np.mean(np.sum((best_fit(points, others, mirror) - others)**2, axis=1))))
+    square = np.sum((best_fit(points, others, mirror, areas) - others)**2, axis=1)
+    return float(np.sqrt(np.average(square, weights=areas)))
 
 
 def from_band(distance, orders):
@@ -148,12 +163,13 @@ def rows_of(bench, name, part):
     made = {order: bench.run(f"{label}_{number}", deck(part, order), settings,
                              ("--restart", str(drawn.folder / "restart.h5")), timeout=7200)
             for number, order in enumerate(ORDERS)}
-    shapes = {order: last(release.folder) for order, release in made.items()}
-    distance = {(a, b): distance_of(shapes[a], shapes[b], part.mirror) for a in ORDERS for b in ORDERS}
+    (drawing, *freed), areas = shapes_of([drawn.folder, *(release.folder for release in made.values())])
+    shapes = dict(zip(ORDERS, freed))
+    distance = {(a, b): distance_of(shapes[a], shapes[b], areas, part.mirror) for a in ORDERS for b in ORDERS}
     rows = []
     for order, release in made.items():
         first = not rows
-        change = distance_of(last(drawn.folder), shapes[order], part.mirror)
+        change = distance_of(drawing, shapes[order], areas, part.mirror)
         rim = f"{slope(release.folder):.2f}" if part.strip else ""
         rows.append([name if first else "", order, f"{change:.3f}", rim,
                      *("" if order == other else f"{distance[order, other]:.4f}" for other in list(ORDERS)[:3]),
