@@ -154,7 +154,21 @@ contains
           "The sheet is bent by more than 1.5 times `adaptive_angle` over elements of the "// &
           "highest level, or of the least length, at the end of the phase. Where a tool enters "// &
           "the sheet between its nodes, W109 tells it instead.", &
-          "The `adaptive` or `adaptive_size` that the message gives.")]
+          "The `adaptive` or `adaptive_size` that the message gives."), &
+      row("W119", "sheet that is not formed to the tools", &
+          "At the end of its path a punch is more than 0.2 thicknesses before the place where "// &
+          "it would pinch the sheet against the tool across, or the sheet lies more than 0.1 "// &
+          "thicknesses off both.", "The whole path of the punch; a tool across that ends where "// &
+          "the part does, if it is deeper than the part by design."), &
+      row("W120", "sheet beyond the holder", &
+          "When the holder begins to press, the rim of the sheet lies more than a thickness "// &
+          "beyond its outer edge, where nothing keeps the sheet from wrinkling.", &
+          "A larger holder, or a smaller blank."), &
+      row("W121", "support that carries a part of the tool force", &
+          "A support at a few nodes, which are not all nodes of a plane, carries more than 1 % "// &
+          "of the largest force on a tool at the end of the phase: it shapes the sheet, which "// &
+          "it should only hold in its place.", "Supports at other nodes or in fewer "// &
+          "directions; none where tools and friction hold the sheet.")]
   end function run_warnings
 
   !> Return the notes.
@@ -178,7 +192,10 @@ contains
           "sheet that acted on it in the other run are gone; what they leave fades over the "// &
           "first phase.", "A first phase with `unload = on`, if they are large."), &
       row("N105", "phase without increments", &
-          "The condition of its early end holds at its start.", "Check `until` of the phase.")]
+          "The condition of its early end holds at its start.", "Check `until` of the phase."), &
+      row("N107", "sheet that is formed to the tools", &
+          "At the end of its path the punch is within 0.2 thicknesses of the place where it "// &
+          "would pinch the sheet, which lies on the punch or the tool across.", "None.")]
   end function notes
 
 end module dd3_message_warnings

@@ -6,6 +6,7 @@ module dd3_output_run_summary
   use dd3_base_interrupt, only : interruption_code
   use dd3_base_kinds, only : wp
   use dd3_model_state, only : state_t
+  use dd3_output_closing, only : closing_t
   use dd3_output_status, only : status_row_t
   implicit none
   private
@@ -32,6 +33,8 @@ module dd3_output_run_summary
     real(wp) :: seconds = 0.0_wp
     !> Limiters of the accepted increments.
     type(limiter_count_t), allocatable :: limited(:)
+    !> How far the sheet was formed at its end.
+    type(closing_t) :: closing
   contains
     procedure :: add => phase_add
     procedure :: finish => phase_finish

@@ -35,6 +35,7 @@ module dd3_run_model
   use dd3_report_refinement_warnings, only : late_warning
   use dd3_report_phase_warnings, only : end_notes, start_notes
   use dd3_run_adaptivity, only : adaptivity_t, most_returns, new_adaptivity
+  use dd3_run_phase_closing, only : close_phase
   use dd3_run_thread_choice, only : new_thread_choice, thread_choice_t
   use dd3_settings_solver, only : solver_spec_t
   use dd3_system_system, only : new_system
@@ -221,6 +222,7 @@ contains
       end do
       ended = .not. allocated(error)
       call end_notes(model, committed, ended, case%adaptive, notes)
+      if (ended) call close_phase(model, case, committed, run%summary, notes)
       call tell_all(log, notes)
       if (ended) call run%records%write_phase_end(model, committed, error)
     end associate

@@ -11,6 +11,7 @@ module dd3_run_file_phase
   use dd3_model_tilt, only : tilt_t
   use dd3_output_run_summary, only : phase_summary_t
   use dd3_report_attempt_report, only : tool_name
+  use dd3_run_file_closing, only : add_closing
   use dd3_run_file_input, only : add_location
   use dd3_settings_limits, only : limit_spec_t, limits_spec_t
   use dd3_settings_newton, only : newton_spec_t
@@ -36,7 +37,7 @@ contains
       call json%begin_object("")
       call json%add("number", i)
       call add_phase(json, case, model, i)
-      call add_result(json, summary(i))
+      call add_result(json, model, summary(i))
       call add_location(json, "at", case%phase(i)%source%opened)
       call json%end_object()
     end do
@@ -264,8 +265,9 @@ contains
   end subroutine add_contact
 
   !> Add what happened.
-  subroutine add_result(json, summary)
+  subroutine add_result(json, model, summary)
     type(json_t), intent(inout) :: json
+    type(model_t), intent(in) :: model
     type(phase_summary_t), intent(in) :: summary
 
     integer :: i
@@ -297,6 +299,7 @@ contains
     end do
     call json%end_object()
     call json%add("seconds", summary%seconds)
+    call add_closing(json, model, summary%closing)
     call json%end_object()
   end subroutine add_result
 

@@ -223,7 +223,7 @@ def test_report(run, tmp_path):
     """Check that the page is complete and needs no other file."""
     call("report", run, "--mirror", "x", "y", "--output", tmp_path / "report")
     text = (tmp_path / "report" / "report.html").read_text()
-    for title in ("Result", "Thinning", "Sheet and tools", "Forming limit", "Thickness along sections",
+    for title in ("Verdict", "Result", "Thinning", "Sheet and tools", "Forming limit", "Thickness along sections",
                   "Outline and draw-in", "Phase 1: draw", "Draw-beads", "Warnings", "Run", "Set-up"):
         assert f"<h2>{title}</h2>" in text, title
     assert "A profile &amp; its &lt;report&gt;" in text and "job.dat:3: the mesh is coarse" in text
@@ -285,6 +285,9 @@ def test_numbers_of_the_report(run, tmp_path):
     assert sections["Phase 1: draw"] == {
         "punch": "moved by 0 0 -2 mm", "driven by": "punch", "ends": "at a travel of 2 mm, 100 %",
         "increments": "1, 0 cut back; 5 iterations", "limited by": "rotation 1", "warning": "W109: the mesh is coarse"}
+    assert {name: answer.split(" ", 2)[:2] for name, answer in sections["Verdict"].items()} == {
+        "run": ["good", "reached"], "formed to the tools": ["not", "judged"], "forming limit": ["not", "good"],
+        "thinning": ["good", "thinning"]}
     assert sections["Draw-beads"] == {"rib": "at most 1.2 kN, at the end 1.2 kN; on the sheet 40 mm at most, "
                                              "40 mm at the end"}
     assert sections["Run"] == {"end of the run": "reached", "increments": "1", "cut-backs": "0", "iterations": "5",

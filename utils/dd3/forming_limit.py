@@ -189,6 +189,11 @@ class Strains:
     thinning: np.ndarray
     at_cells: "Strains | None" = None
 
+    def largest_thinning(self) -> float:
+        """Return the largest thinning of nodes and elements."""
+        cells = self.at_cells.thinning if self.at_cells else np.zeros(0)
+        return float(max(self.thinning.max(), cells.max(initial=0.0)))
+
 
 def strains_of(sheet: Sheet, step: int, surface: str) -> Strains:
     """Return the strains of a sheet at its lower or upper face or its middle."""
@@ -250,9 +255,8 @@ def thinned(strains: Strains, cells: Strains, limits: Limits) -> str:
     """Return the verdict by the thinning."""
     parts = [f"{(values > limits.thinning).sum()} of {len(values)} {name}"
              for name, values in (("nodes", strains.thinning), ("elements", cells.thinning)) if len(values)]
-    largest = max(strains.thinning.max(), cells.thinning.max(initial=0.0))
     return (f"thinning above {100 * limits.thinning:.3g} % ({limits.given_by}): {', '.join(parts)}; largest "
-            f"{100 * largest:.3g} %")
+            f"{100 * strains.largest_thinning():.3g} %")
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

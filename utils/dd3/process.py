@@ -32,6 +32,7 @@ from pathlib import Path
 from typing import Any
 
 from dd3 import report as pages
+from dd3 import verdict
 from dd3.command import new_parser
 from dd3.errors import Problem
 from dd3.programs import command, find_program, launch, made_folder
@@ -221,9 +222,10 @@ def write_report(process: Process) -> Path:
         rows.append((f'<a href="{operation.name}/report.html">{html.escape(operation.name)}</a>',
                      html.escape(" ".join(job["title"].split())), html.escape(job["outcome"]["state"]),
                      job["sheet"]["elements"], f"{largest:.4g}", f"{100 * thinning.max():.3g}", f"{draw.max():.3g}",
-                     job["counts"]["increments"], len(job["warnings"]), f"{job['seconds']:.4g}"))
+                     job["counts"]["increments"], len(job["warnings"]), f"{job['seconds']:.4g}",
+                     html.escape(verdict.summary(page.verdict))))
     head = ("operation", "title", "state", "elements", "largest force, kN", "largest thinning, %", "plastic strain",
-            "increments", "warnings", "seconds")
+            "increments", "warnings", "seconds", "verdict")
     lines = ["<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows]
     path = target / "report.html"
     title = html.escape(process.title)

@@ -3,19 +3,22 @@
 
     dd3 report cup.out --mirror x y --low-carbon-steel
     dd3 report rail.out --mirror y --curve dc06.csv --section y=0 --section x=30 --output rail_report
+    dd3 report cup.out --mirror x y --waves 0.2 --tolerance 0.5 --verdict
 
-The page has the thinning, the deformed sheet between its tools, the forming limit diagram, thickness along sections,
-the outline before and after, the springback of a sheet that was released (its distance from the drawn shape, sections,
-angles, twist), the refinements and the final mesh where elements were divided in the run, for each phase the tools'
-motions and forces, what limited its increments and what warned, the statistics of the run, and the set-up. --mirror
-completes a model at its planes of symmetry; forces are multiplied accordingly. Forming limit curve and thinning limit
-are those of `dd3 fld`; without a curve for the material there is no verdict. The strains are those at the middle of the
-sheet.
+The page begins with the verdict: whether the sheet is formed to the tools, its waves under the holder, splits,
+thinning, springback; --verdict prints it and ends with exit code 1 if something is not good. Then come the thinning,
+the deformed sheet between its tools, the forming limit diagram, thickness along sections, the outline before and
+after, the springback of a sheet that was released (its distance from the drawn shape, sections, angles, twist), the
+refinements and the final mesh where elements were divided in the run, for each phase the tools' motions and forces,
+what limited its increments and what warned, the statistics of the run, and the set-up. --mirror completes a model at
+its planes of symmetry; forces are multiplied accordingly. Forming limit curve and thinning limit are those of `dd3
+fld`; without a curve for the material it is not judged. The strains are those at the middle of the sheet.
 """
 
 import argparse
 import base64
 import html
+import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
@@ -25,7 +28,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from dd3 import forming_limit, springback
+from dd3 import forming_limit, springback, verdict
 from dd3.account import Account
 from dd3.bound import closed_skin
 from dd3.command import new_parser
@@ -67,6 +70,9 @@ class Report:
         self.whole = 2 ** len(options.mirror)  # number of images of the model
         self.parts: list[str] = []
         self.limits: list[str] = []  # results of the forming limit diagram: by the curve, by the thinning
+        self.splits: list[verdict.Item] = []
+        self.sprung: float | None = None  # largest distance of the free shape from the drawn one, mm
+        self.verdict: list[verdict.Item] = []
 
     def field(self, name: str) -> np.ndarray:
         """Return a field at the last step."""
@@ -125,6 +131,18 @@ def add_summary(report: Report) -> None:
     if abs(work) > 0:
         tools.append(("error of the energy balance", f"{100 * report.column('energy_error')[-1] / work:.2g} %"))
     report.add("Result", columns(table(rows), table(tools)))
+
+
+def add_verdict(report: Report) -> None:
+    """Add what is good and what is not."""
+    options = report.options
+    report.verdict = verdict.judge(report.job, options.waves, report.splits,
+                                   verdict.sprung(report.sprung, options.tolerance))
+    rows = "".join(f'<tr><th>{html.escape(item.name)}</th><td><span class="key" style="background:'
+                   f'{verdict.COLOURS[item.answer]}"></span>{item.answer}</td><td>{html.escape(item.text)}</td></tr>'
+                   for item in report.verdict)
+    said = verdict.summary(report.verdict)
+    report.add("Verdict", f"<p><b>{html.escape(said[:1].upper() + said[1:])}.</b></p><table>{rows}</table>")
 
 
 def add_setup(report: Report) -> None:
@@ -268,6 +286,7 @@ def add_springback(report: Report) -> None:
     if twisted:
         rows.append((f"twist about {twisted[0]} from 10 to 90 % of the length", f"{twisted[1]:+.3g} degrees"))
     distance = found.distance()
+    report.sprung = float(distance.max())
     rows.insert(0, ("largest distance from the drawn shape", f"{distance.max():.4g} mm"))
     rows.insert(1, ("mean distance", f"{distance.mean():.4g} mm"))
     report.add("Springback", "<p>The free shape, moved to the best fit with the drawn one.</p>"
@@ -311,6 +330,8 @@ def add_limit_diagram(report: Report) -> None:
     limits = forming_limit.find_limits(report.sheet, report.job, report.options, account)
     strains = forming_limit.strains_of(report.sheet, report.last, "middle")
     zone, report.limits = forming_limit.draw(axes, strains, limits, report.options.margin)
+    critical = None if zone is None else int((zone == forming_limit.ZONES.index("critical")).sum())
+    report.splits = verdict.splits(critical, report.limits, strains.largest_thinning() > limits.thinning)
     content = report.figure("limit", figure, "forming limit diagram")
     content += "" if zone is None else zone_map(report, zone)
     said = [*report.limits, *(f"left out: {item}" for item in account.left_out())]
@@ -453,15 +474,22 @@ def write(options: argparse.Namespace) -> Report:
     report = Report(options)
     for step in each(STEPS, "report"):
         step(report)
-    add_summary(report)
-    report.parts.insert(0, report.parts.pop())
+    for step in (add_summary, add_verdict):
+        step(report)
+        report.parts.insert(0, report.parts.pop())
     report.path.write_text(page(report), encoding="utf-8")
     return report
 
 
 def main(words: Sequence[str] | None = None) -> None:
     """Write the page of the command line."""
-    print(report_of(words).path)
+    report = report_of(words)
+    print(report.path)
+    if report.options.verdict:
+        print(*(f"{item.name}: {item.answer}: {item.text}" for item in report.verdict),
+              f"verdict: {verdict.summary(report.verdict)}", sep="\n")
+        if verdict.failed(report.verdict):
+            sys.exit(1)
 
 
 def report_of(words: Sequence[str] | None) -> Report:
@@ -473,8 +501,15 @@ def report_of(words: Sequence[str] | None) -> Report:
     forming_limit.add_options(parser)
     parser.add_argument("--section", action="append", default=[], metavar="PLANE",
                         help="x=0, y=12.5 or an angle in degrees; may be repeated (default: through the middle)")
+    parser.add_argument("--waves", type=float, metavar="MM", help="largest height of waves under a holder and in walls")
+    parser.add_argument("--tolerance", type=float, metavar="MM",
+                        help="largest distance of the free shape from the drawn one")
+    parser.add_argument("--verdict", action="store_true",
+                        help="print the verdict, and end with exit code 1 if something is not good")
     parser.add_argument("--output", type=Path, metavar="DIR", help="folder of page and pictures (default: RUN/report)")
     options = parser.parse_args(words)
+    if any(limit is not None and not limit > 0 for limit in (options.waves, options.tolerance)):
+        parser.error("--waves and --tolerance take a positive number")
     options.mirror = sorted(set(options.mirror))
     forming_limit.check_options(parser, options)
     return write(options)

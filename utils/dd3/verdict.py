@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Verdict on a formed part: whether the sheet is formed to the tools, splits, waves, springs back too far."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any, NamedTuple
+
+GOOD, BAD, DOUBTFUL, OPEN = "good", "not good", "doubtful", "not judged"
+COLOURS = {GOOD: "#55a868", BAD: "#d64541", DOUBTFUL: "#f0c040", OPEN: "#9aa0a6"}
+
+
+class Item(NamedTuple):
+    """A question of the verdict, its answer, and the figures."""
+
+    name: str
+    answer: str
+    text: str
+
+
+class Ended(NamedTuple):
+    """A phase that has ended: its name, what run.json tells of the tools at its end, and the codes of its warnings."""
+
+    phase: str
+    closing: dict[str, Any]
+    codes: set[str]
+
+
+def ended_phases(job: dict[str, Any]) -> Iterator[Ended]:
+    """Return the phases of a run with what they tell of the sheet between the tools, also those before a restart."""
+    earlier = (job.get("continued") or {}).get("earlier")
+    if earlier:
+        yield from ended_phases(earlier)
+    for phase in job["phases"]:
+        closing = phase.get("result", {}).get("closing")
+        if closing:
+            yield Ended(phase["name"], closing, {warning["code"] for warning in job["warnings"]
+                                                 if warning["phase"] == phase["name"]})
+
+
+def at(place: dict[str, Any]) -> str:
+    """Return where a distance is."""
+    return f"at ({', '.join(f'{x:.1f}' for x in place['position'])}) mm, node {place['node']}"
+
+
+def end_of_run(job: dict[str, Any]) -> Item:
+    """Judge how the run ended."""
+    outcome = job["outcome"]
+    reached = outcome["state"] == "reached"
+    return Item("run", GOOD if reached else BAD,
+                "reached its end" if reached else str(outcome["message"] or outcome["state"]))
+
+
+def formed(phases: Sequence[Ended], waves: float | None) -> list[Item]:
+    """Judge whether the sheet is formed to the tools where punches have ended their paths, and the waves in walls.
+
+    A wave between two tools crosses the middle between its crest and its trough, where it is at least half its height
+    off both.
+    """
+    if not phases:
+        return [Item("formed to the tools", OPEN, "the run does not tell; dd3imp does from version 2.7.0 on")]
+    ends = [(phase, punch) for phase in phases for punch in phase.closing["punches"]]
+    if not ends:
+        return [Item("formed to the tools", OPEN, "no punch has ended its path on the sheet")]
+    items = []
+    for phase, punch in ends:
+        left, off, wall = punch["path_left"], punch["off_tools"], punch["off_walls"]
+        if left is None:
+            items.append(Item("formed to the tools", OPEN,
+                              f"no tool is across from '{punch['tool']}' at the end of phase '{phase.phase}'"))
+        else:
+            items.append(Item("formed to the tools", BAD if "W119" in phase.codes else GOOD,
+                              f"within {off['distance']:.2g} mm, largest {at(off)}; path left of '{punch['tool']}' "
+                              f"before '{left['tool']}': {left['distance']:.2g} mm, {at(left)}"))
+        if wall:
+            answer = OPEN if waves is None else GOOD if 2 * wall["distance"] <= waves else DOUBTFUL
+            items.append(Item("waves in walls", answer,
+                              f"at most {2 * wall['distance']:.2g} mm high, as the sheet is up to "
+                              f"{wall['distance']:.2g} mm off the nearer tool, {at(wall)}; there the tools leave "
+                              f"{punch['wall_space']:.2g} mm beyond the thickness" + limit_text("--waves", waves)))
+    return items
+
+
+def holders(phases: Sequence[Ended], limit: float | None) -> list[Item]:
+    """Judge the waves under the holders at the end of the forming, and tell of the sheet beyond them."""
+    last = {holder["tool"]: (phase, holder) for phase in phases for holder in phase.closing["holders"]}
+    items = []
+    for tool, (phase, holder) in last.items():
+        wave, lift = holder["wave"], holder["lift"]
+        if wave is None:
+            continue
+        answer = OPEN if limit is None else BAD if wave["distance"] > limit else GOOD
+        text = f"{wave['distance']:.2g} mm high, {at(wave)}"
+        if lift:
+            text += f"; up to {lift['distance']:.2g} mm off '{lift['tool']}'"
+        items.append(Item(f"waves under '{tool}'", answer, text + limit_text("--waves", limit)))
+    beyond = {}
+    for phase in phases:
+        for holder in phase.closing["holders"]:
+            if "W120" in phase.codes and holder["beyond"]:
+                beyond[holder["tool"]] = (phase, holder["beyond"])
+    items += [Item("sheet beyond the holder", DOUBTFUL, f"up to {place['distance']:.3g} mm beyond '{tool}' in phase "
+                                                        f"'{phase.phase}', {at(place)}")
+              for tool, (phase, place) in beyond.items()]
+    return items
+
+
+def supports(phases: Sequence[Ended]) -> list[Item]:
+    """Tell of supports that carry a part of the tool force."""
+    return [Item("supports", DOUBTFUL,
+                 f"'{support['name']}' carries {support['reaction']:.3g} N along {support['axis']}, "
+                 f"'{support['tool']}' {support['tool_force']:.4g} N, at the end of phase '{phase.phase}'")
+            for phase in phases if "W121" in phase.codes and (support := phase.closing["support"])]
+
+
+def limit_text(option: str, limit: float | None) -> str:
+    """Return the limit of an option."""
+    return f" ({option} {limit:g} mm)" if limit is not None else f" (no limit: {option})"
+
+
+def splits(critical: int | None, said: Sequence[str], thinned: bool) -> list[Item]:
+    """Judge by the forming limit curve and by the thinning.
+
+    critical: number of critical nodes and elements, None without a curve. said: what the diagram says of both.
+    """
+    answer = OPEN if critical is None else BAD if critical else GOOD
+    return [Item("forming limit", answer, said[0]), Item("thinning", BAD if thinned else GOOD, said[1])]
+
+
+def sprung(distance: float | None, tolerance: float | None) -> list[Item]:
+    """Judge the springback by its tolerance; distance: the largest one from the drawn shape, None without a release."""
+    if distance is None:
+        return [Item("springback", OPEN, "the run does not release the sheet")] if tolerance is not None else []
+    answer = OPEN if tolerance is None else BAD if distance > tolerance else GOOD
+    text = f"up to {distance:.3g} mm from the drawn shape"
+    return [Item("springback", answer, text + limit_text("--tolerance", tolerance))]
+
+
+def judge(job: dict[str, Any], waves: float | None, limits: Sequence[Item], springback: Sequence[Item]) -> list[Item]:
+    """Return all items.
+
+    waves: largest height under a holder and in walls, mm. limits, springback: items of `splits` and `sprung`.
+    """
+    phases = list(ended_phases(job))
+    return [end_of_run(job), *formed(phases, waves), *holders(phases, waves), *limits, *springback, *supports(phases)]
+
+
+def summary(items: Sequence[Item]) -> str:
+    """Return the verdict in one line."""
+    named = {answer: list(dict.fromkeys(item.name for item in items if item.answer == answer)) for answer in COLOURS}
+    said = f"{BAD}: {', '.join(named[BAD])}" if named[BAD] else "nothing found against the part"
+    for answer in (DOUBTFUL, OPEN):
+        if named[answer]:
+            said += f"; {answer}: {', '.join(named[answer])}"
+    return said
+
+
+def failed(items: Sequence[Item]) -> bool:
+    """Whether something is not good."""
+    return any(item.answer == BAD for item in items)
