@@ -165,6 +165,11 @@ def s_rail():
     along_s([(-15, 20), (-15, 0), (15, 0), (15, 20)], 5, 75.0, math.radians(30), 52.5)
 
 
+def stepped_hat():
+    """Make a hat section whose flanges are at two heights."""
+    strip([(-50, 25), (-30, 25), (-25, 0), (25, 0), (28, 15), (50, 15)], 1, 3, 80)
+
+
 def arched_rail():
     """Make a hat section along an arch of 300 mm, a sheet of 1 mm."""
     corners, radii = outline([(-35, 20), (-22, 20), (-18, 0), (18, 0), (22, 20), (35, 20)], 1, 3)
@@ -273,7 +278,7 @@ def louvred_cover():
         body = occ.cut(occ.fuse(body, outer)[0], inner)[0]
 
 
-def saddle_panel():
+def saddle_panel(notch=True):
     """Make the surface of a panel on a saddle, with a pocket in its middle and a notch at its rim."""
     x, y = np.linspace(-100, 100, 21), np.linspace(-70, 70, 17)
 
@@ -283,7 +288,8 @@ def saddle_panel():
 
     points = [occ.addPoint(a, b, height(a, b)) for b in y for a in x]
     face = occ.addBSplineSurface(points, 21)
-    occ.cut([(2, face)], [(3, occ.addBox(-10, 55, -60, 20, 40, 120))])
+    if notch:
+        occ.cut([(2, face)], [(3, occ.addBox(-10, 55, -60, 20, 40, 120))])
 
 
 def crowned_block():
@@ -386,12 +392,50 @@ def stepped_pan():
     holes(turned_solid([(0, 0), (20, 0), (22, 12), (40, 12), (43, 30)], 0.5, 3), [(31, 0, 12)], radius=2, length=10)
 
 
+def rim_tray(height):
+    """Make a tray whose walls lean by 6 in 40 and whose rim is at a height over x and y."""
+    def cone(inset, low):
+        rings = [(6 * z / 40 - inset, z) for z in (low, 40)]
+        return [(3, occ.addThruSections([rounded_rectangle(50 + d, 35 + d, 12 + d, z) for d, z in rings])[0][1])]
+
+    outer, inner = cone(0, 0), cone(math.hypot(1, 6 / 40), 1)
+    for body, radius in ((outer, 6), (inner, 5)):
+        low = 0 if body is outer else 1
+        body[0] = occ.fillet([body[0][1]], edges(lambda b, low=low: b[5] < low + 1e-3), [radius])[0]
+    body = occ.cut(outer, inner)[0]
+    x, y = np.linspace(-70, 70, 15), np.linspace(-70, 70, 15)
+    points = [occ.addPoint(a, b, height(a, b)) for b in y for a in x]
+    lid = occ.addBSplineSurface(points, 15)
+    above = [entity for entity in occ.extrude([(2, lid)], 0, 0, 60) if entity[0] == 3]
+    occ.cut(body, above)
+    occ.remove([(2, lid)], recursive=True)
+
+
+def rounded_rectangle(a, b, radius, z):
+    """Return the wire of a rectangle with rounded corners."""
+    face = occ.addRectangle(-a, -b, z, 2 * a, 2 * b, roundedRadius=radius)
+    wire = occ.addWire([edge for _, edge in occ.getEntities(1) if edge in occ.getCurveLoops(face)[1][0]])
+    occ.remove([(2, face)])
+    return wire
+
+
+def s_rim_tray():
+    """Make a tray without flange whose rim is an S in height along x."""
+    rim_tray(lambda x, y: 26 + 7 * math.sin(x / 35))
+
+
+def saddle_tray():
+    """Make a tray without flange whose rim is on a saddle."""
+    rim_tray(lambda x, y: 26 + 6 * (x / 50)**2 - 6 * (y / 40)**2)
+
+
 PARTS = {
     "angle": Expected(angle, thickness=2.0, bent=True, holes=4, symmetry=1, radius=3.0, toward=(0, 1, 1)),
     "z_section": Expected(z_section, thickness=1.5, bent=True, symmetry=1, radius=2.0, toward=(0, 1, 1)),
     "u_section": Expected(u_section, bent=True, notches=2, symmetry=2, radius=2.0),
     "hat": Expected(hat, thickness=1.2, bent=True, symmetry=2, radius=3.0),
     "sharp_hat": Expected(sharp_hat, bent=True, symmetry=2, radius=0.0, toward=(0, 0, -1)),
+    "stepped_hat": Expected(stepped_hat, bent=True, symmetry=1, radius=3.0),
     "s_rail": Expected(s_rail, kind="surface", thickness=None, radius=5.0),
     "arched_rail": Expected(arched_rail, symmetry=2, radius=3.0),
     "s_flange": Expected(s_flange, kind="surface", thickness=None, radius=5.0),
@@ -403,6 +447,8 @@ PARTS = {
     "pan": Expected(pan, symmetry=2, radius=4.0),
     "stepped_pan": Expected(stepped_pan, thickness=0.5, holes=1, symmetry=1, radius=3.0),
     "cup_with_holes": Expected(cup_with_holes, holes=5, symmetry=2, radius=5.0),
+    "s_rim_tray": Expected(s_rim_tray, symmetry=1, radius=5.0),
+    "saddle_tray": Expected(saddle_tray, symmetry=2, radius=5.0),
     "slotted_cover": Expected(slotted_cover, thickness=0.8, holes=165, symmetry=2, radius=3.2),
     "louvred_cover": Expected(louvred_cover, holes=3, symmetry=1, radius=0.0),
     "saddle_panel": Expected(saddle_panel, kind="surface", thickness=None, notches=1, symmetry=1),

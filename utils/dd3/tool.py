@@ -14,6 +14,8 @@ edges of more than two patches, free edges that nearly coincide, or a missed tol
 """
 import argparse
 import shlex
+import shutil
+import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -27,7 +29,7 @@ from dd3.gmsh_session import session
 from dd3.part import setup, table
 from dd3.part.command import write_reading
 from dd3.progress import Progress
-from dd3.tools import cad, facets, mend, moved, picture, report, set_deck, sides, tool_set
+from dd3.tools import cad, facets, mend, moved, picture, report, set_deck, sides, tool_set, trim_deck
 from dd3.tools.cad import SUFFIXES as CAD
 from dd3.tools.facet_files import SUFFIXES as FACETS
 from dd3.tools.facet_files import Facets
@@ -209,7 +211,11 @@ def command_line() -> argparse.ArgumentParser:
     whole.add_argument("--shoulder", type=float, metavar="mm",
                        help=f"radius of the die's shoulder ({tool_set.SHOULDER:g} thicknesses)")
     whole.add_argument("--flange", type=float, metavar="mm",
-                       help=f"width of the flange beyond the shoulder ({tool_set.FLANGE:g} thicknesses)")
+                       help="width of the die beyond the shoulder (as the blank needs)")
+    whole.add_argument("--margin", type=float, metavar="mm",
+                       help=f"of the blank beyond the part, or the shoulder ({tool_set.MARGIN:g} thicknesses)")
+    whole.add_argument("--program", type=Path, metavar="FILE",
+                       help="the program, which checks the input file (build/release/dd3imp, else dd3imp)")
     whole.add_argument("--side", choices=("punch", "die"), help="the tool that touches the faces (punch)")
     whole.add_argument("--material", type=Path, metavar="FILE", help="file with a *MATERIAL for the input file")
     return parser
@@ -232,7 +238,7 @@ def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
         raise Problem(f"{options.target}: the name of a tool surface ends in .bez")
     if options.toward and not np.any(options.toward):
         parser.error("--toward takes a direction")
-    for name in ("scale", "sew", "tolerance", "radius", "thickness", "shoulder", "flange"):
+    for name in ("scale", "sew", "tolerance", "radius", "thickness", "shoulder", "flange", "margin"):
         if getattr(options, name) is not None and not 0 < getattr(options, name) < np.inf:
             parser.error(f"--{name} takes a positive number")
     if any(not np.any(axis) for *axis, _ in options.rotate):
@@ -242,11 +248,12 @@ def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
             parser.error(f"--{name} takes CAD: {' '.join(CAD)}")
     if options.smooth and not options.faces:
         parser.error("--smooth goes with --faces")
-    for name in ("clearance", "shoulder", "flange", "side", "material"):
+    for name in ("clearance", "shoulder", "flange", "margin", "side", "material"):
         if getattr(options, name) is not None and not options.whole:
             parser.error(f"--{name} goes with a folder, or --thickness")
     options.side = options.side or "punch"
-    options.taken = None
+    options.closed = options.taken = None
+    options.curves, options.roles, options.angles, options.sharp, options.visible = [], {}, {}, {}, {}
     if options.whole:
         check_set(parser, options)
     options.tolerance = options.tolerance or TOLERANCE[options.kind]
@@ -270,9 +277,12 @@ def settle_set(options: argparse.Namespace) -> None:
     """Set the sizes of a set of tools that were not given."""
     options.radius = options.radius or options.thickness
     for name, factor in (("clearance", tool_set.CLEARANCE), ("shoulder", tool_set.SHOULDER),
-                         ("flange", tool_set.FLANGE)):
+                         ("margin", tool_set.MARGIN)):
         if getattr(options, name) is None:
             setattr(options, name, factor * options.thickness)
+    # The convex ones of a side are the larger by the gap, so that the tool on the other side has the radius there.
+    gap = options.thickness + options.clearance
+    options.sharp = {edge: options.radius + (gap if angle > 0 else 0.0) for edge, angle in options.angles.items()}
 
 
 def made(options: argparse.Namespace) -> tuple[Surface, Joints, report.Report]:
@@ -336,13 +346,33 @@ def make_set(options: argparse.Namespace, command: str) -> dict[str, report.Repo
         tools = tool_set.made(gmsh, options, progress)
     progress.end()
     reports = judge_set(tools, options)
-    if any(result.errors for result in reports.values()):
-        cause = setup.likely_cause(reading)
-        next(iter(reports.values())).errors[:0] = [cause] if cause else []
-    elif options.target:
+    if options.target and not any(result.errors for result in reports.values()):
         write_set(tools, options, material, command)
-        reports[str(options.target / DRAW)] = report.Report([f"  {'travel':<10} {tools.travel:.6g} mm"])
+        reports[str(options.target / DRAW)] = report.Report(
+            [f"  {'travel':<10} {tools.travel:.6g} mm", f"  {'blank':<10} {set_deck.said(options, tools.blank)}"])
+        check_deck(reports[str(options.target / DRAW)], options)
+        if options.curves:
+            reports[str(options.target / trim_deck.DECK)] = report.Report([f"  {'curves':<10} {len(options.curves)}"])
     return reports
+
+
+def check_deck(result: report.Report, options: argparse.Namespace) -> None:
+    """Add what the program says of the input file of a set to its report: memory, elements, time, warnings and errors."""
+    program = shutil.which(options.program or "build/release/dd3imp") or shutil.which("dd3imp")
+    if options.program and not shutil.which(options.program):
+        result.errors.append(f"{options.program}: no such program")
+    elif not program:
+        result.add("check", "not made, as there is no program dd3imp; --program names it")
+    else:
+        done = subprocess.run([program, "--check", options.target / DRAW], capture_output=True, text=True, check=False)
+        for line in done.stdout.splitlines():
+            kind, _, text = line.partition(": ")
+            if kind in ("memory", "refinement", "time"):
+                result.add(kind, text)
+            elif kind.startswith("warning "):
+                result.warnings.append(f"{DRAW}: {kind.split()[-1]}: {text}")
+        if done.returncode:
+            result.errors.append(f"{DRAW} is refused by the program: {done.stderr.strip()}")
 
 
 def judge_set(tools: tool_set.ToolSet, options: argparse.Namespace) -> dict[str, report.Report]:
@@ -366,8 +396,11 @@ def write_set(tools: tool_set.ToolSet, options: argparse.Namespace, material: st
     options.target.mkdir(parents=True, exist_ok=True)
     for name, surface in tools.surfaces.items():
         write(options.target / f"{name}.bez", surface, [f"{name} of {options.source.name}: {command}"])
-    text = set_deck.deck(options, material, tools.plan, tools.travel, tools.area, command)
+    set_deck.write_blank(options.target, tools.blank, options.source.name)
+    text = set_deck.deck(options, material, tools, command)
     (options.target / DRAW).write_text(text, encoding="utf-8")
+    if options.curves:
+        trim_deck.write(options, tools.height)
 
 
 def main(words: Sequence[str] | None = None) -> None:

@@ -47,11 +47,12 @@ class Hole:
 
 @dataclass
 class Notch:
-    """A notch of the outer rim: width of its mouth and depth, mm, and its place."""
+    """A notch of the outer rim: width of its mouth and depth, mm, its place, and its edges."""
 
     width: float
     depth: float
     centre: np.ndarray
+    edges: list[int]
 
 
 def find_loops(shape: Shape, faces: list[int]) -> list[Loop]:
@@ -127,8 +128,18 @@ def find_notches(shape: Shape, faces: list[int], loop: Loop) -> list[Notch]:
         along = unit(ends[1] - ends[0])
         away = shape.nodes[loop.nodes[corner[inside]]] - ends[0]
         depth = float(np.linalg.norm(away - (away @ along)[:, None] * along, axis=1).max())
-        found.append(Notch(float(np.linalg.norm(ends[1] - ends[0])), depth, ends.mean(axis=0)))
+        found.append(Notch(float(np.linalg.norm(ends[1] - ends[0])), depth, ends.mean(axis=0),
+                           edges_between(shape, loop, *corner[[before, after]])))
     return found
+
+
+def edges_between(shape: Shape, loop: Loop, first: int, last: int) -> list[int]:
+    """Return the edges of a rim between two of its nodes, by their places in it."""
+    places = np.arange(first, last if last > first else last + len(loop.nodes)) % len(loop.nodes)
+    pairs = np.sort(np.stack([loop.nodes[places], np.roll(loop.nodes, -1)[places]], axis=1), axis=1)
+    count = len(shape.nodes)
+    own = np.isin(np.sort(shape.pieces, axis=1) @ [count, 1], pairs @ [count, 1])
+    return sorted(set(shape.piece_edge[own].tolist()))
 
 
 def inward_runs(turn: np.ndarray) -> list[np.ndarray]:

@@ -15,14 +15,14 @@ MOST_LABELS = 250
 OBLIQUE = 0.4  # tangent of the angle by which the view turns from across the part
 # Triangles of a face that are tried for its number, and its distance from the face over the size of the part.
 TRIED, AHEAD = 12, 0.005
-FAULT, EDGE = "#d62728", "#444444"
+FAULT, EDGE, OPENING = "#d62728", "#444444", "#1a8f4a"
 # Colours of rims, of undercut faces, and of draft angles from 0 to 90 degrees.
 RIM, BACK, WALLS, LEVEL = np.array([[0.60, 0.63, 0.65], [0.84, 0.15, 0.16], [0.98, 0.80, 0.36], [0.45, 0.66, 0.85]])
 
 
 def draw(reading: Reading, path: Path) -> None:
     """Write the picture: faces by their draft, walls yellow and level ones blue, undercut ones red, rims grey; edges of
-    faults thick and red, with their numbers. No display is needed."""
+    faults thick and red, with their numbers, and those of holes and notches green. No display is needed."""
     import pyvista as pv
     from vtkmodules.vtkCommonCore import vtkLogger
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
@@ -40,6 +40,10 @@ def draw(reading: Reading, path: Path) -> None:
         plotter.set_background("white")
         plotter.add_mesh(mesh, scalars="colour", rgb=True, ambient=0.35, opacity=1.0 if reading.direction else 0.08)
         plotter.add_mesh(lines(pv, reading, None), color=EDGE, line_width=1.2)
+        openings = [edge for hole in reading.holes for edge in hole.loop.edges]
+        openings += [edge for notch in reading.notches for edge in notch.edges]
+        if openings:
+            plotter.add_mesh(lines(pv, reading, openings), color=OPENING, line_width=3)
         view = unit(above * up + 0.75 * side)
         label(plotter, reading, rays, view)
         focus = middle_of(points, [*across(view, up), view])

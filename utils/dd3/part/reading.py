@@ -64,8 +64,8 @@ class Reading:
     """What is found of a part: unit of the file; names of its parts with their faces; triangles; sheet, surface or
     block; whether its faces belong to solids; directions with the one that is taken, and the best one; rims of its
     upper side, the outer one first; roles of its faces; bends, if it is formed by these alone; least radii inside and
-    outside of bends with the face or the edge; planes of symmetry; what is to be told; why it cannot be drawn;
-    seconds."""
+    outside of bends with the face or the edge; planes of symmetry; what is to be told; entities of the file that are
+    left out; why it cannot be drawn; seconds."""
 
     path: Path
     unit: str
@@ -87,6 +87,7 @@ class Reading:
     symmetry: list[tuple[np.ndarray, float]] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
+    left_out: list[str] = field(default_factory=list)
     faults: list[Fault] = field(default_factory=list)
     seconds: float = 0.0
 
@@ -122,6 +123,7 @@ def read_part(gmsh: Any, request: Request, progress: Callable[[float], None] = l
         tell_faces(gmsh, reading, request, gaps)
         tell_thickness(reading, request)
         read_form(reading, rays, request)
+    reading.left_out = [f"left out: {item}" for item in account.left_out()]
     reading.seconds = time.perf_counter() - start
     return reading
 

@@ -2,15 +2,19 @@
 """What `dd3 tool` takes from the reading of a part: thickness, press direction, the faces of one side; or why it makes
 no tools."""
 import argparse
+from dataclasses import replace
 
 import numpy as np
 
 from dd3.gmsh_session import session
+from dd3.part.closed import closed_part
+from dd3.part.features import read_roles
+from dd3.part.loops import find_loops
+from dd3.part.openings import curves_of
 from dd3.part.reading import Fault, Reading, Request, read_part, read_upper
 from dd3.part.shape import angle_between, unit
-from dd3.part.table import kind_of, named
+from dd3.part.table import kind_of
 from dd3.progress import Progress
-from dd3.tools.faces import spans
 from dd3.tools.moved import rotation
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -18,13 +22,16 @@ UP = np.array([0.0, 0.0, 1.0])
 LEVEL = 0.01
 # Angle from which the direction that is proposed is another one, degrees.
 OTHER = 60.0
+# Cosine between directions that are the same for a block.
+PARALLEL = 0.999
 # That from which it is the other side, degrees.
 REVERSED = 135.0
 
 
 def read_for_tools(options: argparse.Namespace) -> Reading:
     """Read the part of the options, and set `thickness`, `rotate` and `taken`, the faces that one tool touches, where
-    they are not given, and `advice` for where no die can be made around it. The punch comes along z after the
+    they are not given, `closed`, the part without its openings if it has any, `curves` of its rims, `roles` of the faces,
+    `angles` of sharp edges, and `advice` for where no die can be made around it. The punch comes along z after the
     rotation."""
     given = options.toward is not None or bool(options.rotate)
     up = rotation(options.rotate).T @ UP if options.toward is None else unit(np.array(options.toward, float))
@@ -32,7 +39,21 @@ def read_for_tools(options: argparse.Namespace) -> Reading:
     with session() as gmsh:
         reading = read_part(gmsh, Request(options.source, options.part, None, up, options.thickness, options.scale,
                                           options.sew, options.tolerance), progress)
-    progress.end()
+        progress.end()
+        settle(reading, options, up, given)
+        faces = options.taken or (reading.sheet.kind == "surface" and not options.faces and reading.shape.tags)
+        if faces and not reading.faults:
+            options.closed = closed_part(gmsh, reading, faces)
+            options.curves = (options.closed.curves if options.closed
+                              else curves_of(gmsh, reading.path, reading.shape, faces))
+        if options.closed:
+            options.taken, edges = options.closed.taken, options.closed.edges
+            options.angles = {edges[edge]: angle for edge, angle in options.angles.items() if edge in edges}
+    return reading
+
+
+def settle(reading: Reading, options: argparse.Namespace, up: np.ndarray, given: bool) -> None:
+    """Set what is taken from the reading; `given`: the direction `up` is the user's."""
     if reading.direction is None or options.faces:  # with faces of the user's choice the part is not judged
         reading.faults = reading.faults if reading.direction is None else []
     elif not given and reading.best is not None and turns(reading):
@@ -44,11 +65,32 @@ def read_for_tools(options: argparse.Namespace) -> Reading:
     if not options.thickness and not reading.faults:
         reading.faults.append(Fault(f"{kind_of(reading)}: give the thickness of the sheet by --thickness"))
     options.advice = advice(reading, up)
-    sides = reading.sheet.sides
-    if not options.faces and reading.sheet.kind == "sheet" and reading.direction:
-        upper = reading.direction.upper
-        options.taken = upper if options.side == "punch" else sides[1] if upper == sorted(sides[0]) else sides[0]
-    return reading
+    if reading.direction:
+        take_side(reading, options)
+
+
+def take_side(reading: Reading, options: argparse.Namespace) -> None:
+    """Set what is known of the faces of a part: `taken`, those of one side of a sheet, `angles` of the sharp edges
+    between these, and `roles` by face; the projected areas of the faces that are seen from the punch, `visible`."""
+    sides, direction, shape = reading.sheet.sides, reading.direction, reading.shape
+    assert direction
+    one = reading.best if reading.sheet.kind == "block" else direction
+    if one and abs(one.vector @ direction.vector) > PARALLEL:
+        level = np.abs(shape.normal @ one.vector) * shape.area
+        options.visible = {tag: float(level[shape.cells[tag]].sum()) for tag in one.upper}
+    lower = sides[1] if direction.upper == sorted(sides[0]) else sides[0]
+    if not options.advice:  # a part that is open to another side has no flange on this one
+        options.roles = {tag: role.name for tag, role in reading.roles.items()}
+    if reading.sheet.kind != "sheet":
+        return
+    loops = find_loops(shape, lower)
+    below = replace(direction, upper=sorted(lower), facing=-direction.facing)
+    if not options.advice:
+        options.roles |= {tag: role.name for tag, role in read_roles(shape, below, loops[0]).items()}
+    if not options.faces:
+        options.taken = direction.upper if options.side == "punch" else lower
+        options.angles = {number: edge.angle for number, edge in shape.edges_inside(options.taken).items()
+                          if edge.angle}
 
 
 def rounded(thickness: float | None) -> float | None:
@@ -74,24 +116,10 @@ def take(reading: Reading) -> None:
 
 
 def advice(reading: Reading, up: np.ndarray) -> str:
-    """Return what to do if the part has no free edge at which it climbs towards `up`."""
-    flange = [tag for tag, role in reading.roles.items() if role.name == "flange"]
-    inner = [tag for tag, role in reading.roles.items() if role.name not in ("flange", "shoulder")]
+    """Return what to do if the part has no free edge at which it climbs towards `up`: where it is open."""
     if reading.best and reading.best.free and angle_between(reading.best.vector, up) > OTHER:
         return f"; the part is open towards {reading.best.words}: --toward {reading.best.components}"
-    if flange and inner:
-        return f"; it has a flange of its own, {named(flange)}: --faces {spans(inner)} leaves it out"
     return ""
-
-
-def likely_cause(reading: Reading) -> str | None:
-    """Return what of the part most likely makes faulty tools: holes in walls and notches, from which walls go on
-    upwards."""
-    level = {"floor", "step", "island", "flange"}
-    beside = sorted({tag for hole in reading.holes for tag in hole.loop.faces
-                     if tag in reading.roles and reading.roles[tag].name not in level})
-    what = ([f"holes beside {named(beside)}"] if beside else []) + (["notches of the rim"] if reading.notches else [])
-    return f"{' and '.join(what)} are not filled: close them in the CAD program" if what else None
 
 
 def turn_to_z(vector: np.ndarray) -> list[list[float]]:

@@ -25,7 +25,7 @@ from scipy.spatial import cKDTree
 from dd3.account import Account
 from dd3.errors import Problem
 from dd3.progress import Progress
-from dd3.tools import faces, moved
+from dd3.tools import faces, fillets, moved
 from dd3.tools.cad_account import enter_cad
 from dd3.tools.closest import closest
 from dd3.tools.cut import cut, is_closed, planes_through, planes_through_pole
@@ -71,6 +71,7 @@ class Model:
     along: np.ndarray = field(default_factory=lambda: np.empty(0))
     tags: list = field(default_factory=list)
     names: list = field(default_factory=list)
+    origin: list = field(default_factory=list)  # the faces of the file that they are of, 0 for a fillet of a sharp edge
     distance: np.ndarray = field(default_factory=lambda: np.empty(0))
     solid: bool = False  # all faces belong to solids, whose normals are known to point outwards
     parts: list = field(default_factory=list)
@@ -293,17 +294,21 @@ def distances(gmsh: Any, model: Model, net: np.ndarray, shift: np.ndarray | None
         if not len(chosen):
             continue
         point = points_at(net[chosen], *PLACES)
-        foot = closest(gmsh, tag, point, model.uv[chosen])[0]
         if shift is not None:
             area = areas_at(net[chosen], *PLACES)
             length = np.linalg.norm(area, axis=2)
             # At a corner of 180 degrees a patch has no normal.
             regular = length > FLAT_CORNER * length.max(axis=1, keepdims=True)
-            height = ((point - foot) * area).sum(axis=2) / np.where(regular, length, 1.0)
-            away = np.linalg.norm(point - foot, axis=2)
+            normal = area / np.where(regular, length, 1.0)[..., None]
             wanted = shift[chosen, None]
+            # The search begins on the CAD: from afar its steps do not contract where the radius is smaller.
+            moved = np.where(regular[..., None], point - wanted[..., None] * normal, point)
+            foot = closest(gmsh, tag, moved, model.uv[chosen])[0]
+            height = ((point - foot) * normal).sum(axis=2)
+            away = np.linalg.norm(point - foot, axis=2)
             distance[chosen] = np.abs(np.where(regular, height - wanted, away - np.abs(wanted)))
         else:
+            foot = closest(gmsh, tag, point, model.uv[chosen])[0]
             distance[chosen] = np.linalg.norm(foot - point, axis=2)
     return distance
 
@@ -400,9 +405,10 @@ def directions(gmsh: Any, model: Model, regular: set[int], loops: dict[int, list
     return along
 
 
-def mesh_within(gmsh: Any, path: Path, model: Model, tolerance: float, progress: Progress) -> None:
-    """Mesh the faces; divide further those that miss the tolerance, have kinks, or folded patches."""
-    division = Division(gmsh, model.tags)
+def mesh_within(gmsh: Any, path: Path, model: Model, tolerance: float, longest: float, progress: Progress) -> None:
+    """Mesh the faces, with patches along free edges of a length at most; divide further those that miss the tolerance,
+    have kinks, or folded patches."""
+    division = Division(gmsh, model.tags, longest)
     best, start, failures = None, time.process_time(), 0
     for rounds in range(MOST_ROUNDS):
         failed = mesh_once(gmsh, path, model, division)
@@ -450,9 +456,8 @@ def faults(model: Model, rounds: int) -> tuple[np.ndarray, set[int]]:
     return kink, set(model.face[folded(net)].tolist())
 
 
-def read_cad(gmsh: Any, path: Path, options: argparse.Namespace, progress: Progress) -> Model:
-    """Return the model of a CAD file, meshed within the tolerance."""
-    model = Model()
+def read_file(gmsh: Any, path: Path, model: Model, options: argparse.Namespace) -> list[int]:
+    """Read a CAD file: set the parts and notes of the model, and return the faces that are chosen."""
     account = Account()
     load(gmsh, path)
     enter_cad(path, account, len(gmsh.model.getEntities(2)))
@@ -463,12 +468,35 @@ def read_cad(gmsh: Any, path: Path, options: argparse.Namespace, progress: Progr
         gmsh.model.occ.synchronize()
     refuse_gaps(gmsh, path, options.sew)
     model.parts = part_names(gmsh)
-    tags = faces.chosen(gmsh, path, choose(path, model.parts, options.part), options.faces, options.smooth)
+    return faces.chosen(gmsh, path, choose(path, model.parts, options.part), options.faces, options.smooth)
+
+
+def read_closed(gmsh: Any, model: Model, options: argparse.Namespace) -> list[int]:
+    """Read a part whose openings were filled as it was read: set the parts and notes of the model, and return its
+    faces."""
+    options.closed.load(gmsh)
+    model.notes += options.closed.notes
+    model.parts = part_names(gmsh)
+    return [tag for _, tag in gmsh.model.getEntities(2)]
+
+
+def read_cad(gmsh: Any, path: Path, options: argparse.Namespace, progress: Progress) -> Model:
+    """Return the model of a CAD file, meshed within the tolerance."""
+    model = Model()
+    tags = read_closed(gmsh, model, options) if options.closed else read_file(gmsh, path, model, options)
     in_solids = {abs(tag) for _, tag in gmsh.model.getBoundary(gmsh.model.getEntities(3), combined=False,
                                                                oriented=False)}
+    number = options.closed.numbers if options.closed else {}
+    file_tag = {tag: number.get(tag, tag) for tag in tags}
     if options.taken:
         tags = sorted(options.taken)
-    elif options.thickness and not options.faces and set(tags) <= in_solids:
+        if options.sharp and in_solids.issuperset(tags):
+            origin = fillets.rounded(gmsh, tags, options.sharp)
+            file_tag = {tag: file_tag.get(old, 0) for tag, old in origin.items()}
+            tags = list(file_tag)
+            in_solids = set(tags)
+            model.notes.append(fillets.said_of(options.sharp))
+    elif not options.closed and options.thickness and not options.faces and set(tags) <= in_solids:
         # The punch touches a sheet from above.
         up = (0, 0, -1 if options.side == "die" else 1)
         tags = faces.side_of_sheet(gmsh, path, tags, moved.rotation(options.rotate).T @ up)
@@ -479,8 +507,11 @@ def read_cad(gmsh: Any, path: Path, options: argparse.Namespace, progress: Progr
     model.solid = set(model.tags) <= in_solids
     others = [(2, tag) for _, tag in gmsh.model.getEntities(2) if tag not in model.tags]
     owner = {tag: name for name, faces in model.parts for tag in faces}
-    model.names = [f"face {tag} ({gmsh.model.getType(2, tag)}"
-                   + (f", {owner[tag]})" if len(model.parts) > 1 else ")") for tag in model.tags]
+    number = options.closed.numbers if options.closed else {}
+    model.origin = [number.get(file_tag[tag], file_tag[tag]) for tag in model.tags]
+    model.names = [f"face {old} ({gmsh.model.getType(2, tag)}"
+                   + (f", {owner.get(tag, owner.get(old))})" if len(model.parts) > 1 else ")") if old else "fillet of a sharp edge"
+                   for tag, old in zip(model.tags, model.origin)]
     gmsh.model.removeEntities(gmsh.model.getEntities(3))
     gmsh.model.removeEntities(others)
     tolerance = max(options.tolerance, options.sew or 0.0)
@@ -489,7 +520,7 @@ def read_cad(gmsh: Any, path: Path, options: argparse.Namespace, progress: Progr
     if around or closed:
         through = [*around.values(), *(planes_through(gmsh, tag) for tag in closed)]
         cut_closed(gmsh, path, model, [*around, *closed], list(chain.from_iterable(through)))
-    mesh_within(gmsh, path, model, tolerance, progress)
+    mesh_within(gmsh, path, model, tolerance, getattr(options, "longest", np.inf), progress)
     return model
 
 
@@ -504,6 +535,7 @@ def cut_closed(gmsh: Any, path: Path, model: Model, closed: list[int], planes: l
     model.notes.append("faces that close in themselves were cut: "
                        + named(model, [model.tags.index(tag) for tag in closed]))
     model.names = [name for name, part in zip(model.names, parts) for _ in part]
+    model.origin = [tag for tag, part in zip(model.origin, parts) for _ in part]
     model.tags = [tag for part in parts for tag in part]
 
 

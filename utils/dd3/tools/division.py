@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Division of CAD faces into quadrilaterals: how often each edge is divided, and which faces have a regular mesh."""
-from collections import defaultdict
+from collections import Counter, defaultdict
 from typing import Any
 
 import numpy as np
@@ -31,8 +31,9 @@ class Division:
     """Numbers of divisions of the edges; for each face factors on them, along its first and its second edge, which
     `refine` raises. They are equal for a face without a regular mesh."""
 
-    def __init__(self, gmsh: Any, tags: list[int]) -> None:
+    def __init__(self, gmsh: Any, tags: list[int], longest: float = np.inf) -> None:
         self.tags = tags
+        self.longest = longest  # patches along edges of one face only, mm
         self.factor = {tag: np.ones(2) for tag in tags}
         self.last: dict[Any, float] = {}  # the distance of a face when it was divided further
         self.stagnant: defaultdict[Any, int] = defaultdict(int)
@@ -100,10 +101,13 @@ class Division:
     def counts(self) -> dict[int, int]:
         """Return the divisions of each edge; opposite edges of regular faces have the same."""
         need: defaultdict[Any, int] = defaultdict(lambda: 1)
+        faces = Counter(edge for edge, _ in self.turn)
         for (edge, tag), turn in self.turn.items():
             if self.length[edge] <= 1e-9 * self.size:
                 continue
             count = max(1.0, turn / TURN - 1e-6)
+            if faces[edge] == 1:  # a division has two patches
+                count = max(count, self.length[edge] / self.longest / 2)
             if self.curved[tag] and tag not in self.regular:
                 # Divisions of a trimmed face are at most four times as long as the curvature allows.
                 widest = max((self.turn[other, tag] / self.length[other] for other in set(map(abs, self.loops[tag]))

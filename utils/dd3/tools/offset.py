@@ -10,7 +10,7 @@ from dd3.tools.joints import turn
 from dd3.tools.moved import shift_of
 from dd3.tools.report import named
 from dd3.tools.sharp_edges import Patches
-from dd3.tools.surface import Surface, from_nodes, turned
+from dd3.tools.surface import Surface, from_nodes, normals_at_nodes, turned
 
 
 def at_distance(gmsh: Any, model: cad.Model, sign: np.ndarray, kept: np.ndarray, distance: float, radius: float,
@@ -29,7 +29,8 @@ def at_distance(gmsh: Any, model: cad.Model, sign: np.ndarray, kept: np.ndarray,
     shift = shift_of(part.labels.ravel(), normal.reshape(-1, 3), distance).reshape(part.nodes.shape)
     net = from_nodes(part.nodes + shift)
     off = cad.distances(gmsh, part, net, distance * sign[kept] if distance else None).max(axis=1)
-    result = Surface(turn(net, sign[kept]), part.face, list(model.names))
+    ordered = np.where((sign[kept] < 0)[:, None, None, None], normal[:, :, ::-1], normal)
+    result = Surface(turn(net, sign[kept]), part.face, list(model.names), normals=ordered)
     # From here on the patches face the side of the ball.
     flip = sign[kept] * ahead < 0
     patches = Patches(part.nodes.copy(), normal * ahead, shift, part.labels.copy())
@@ -52,10 +53,12 @@ def at_distance(gmsh: Any, model: cad.Model, sign: np.ndarray, kept: np.ndarray,
     changed = int(ball.changed.sum())
     off[ball.changed] = away[:changed]
     result.net[ball.changed] = new[:changed]
+    ordered[ball.changed] = normals_at_nodes(new[:changed])
     largest = cad.by_face(part, off)
     if len(ball.rounding):
         result.notes.append(f"sharp edges rounded by {radius:g} mm: {len(ball.rounding)} patches")
         result.net = np.concatenate([result.net, new[changed:]])
+        result.normals = np.concatenate([ordered, normals_at_nodes(new[changed:])])
         result.face = np.concatenate([result.face, np.full(len(ball.rounding), len(result.names))])
         result.names.append("rounded edges")
         largest = np.append(largest, away[changed:].max())

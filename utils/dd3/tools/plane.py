@@ -11,6 +11,8 @@ from dd3.tools.division import OPTIONS
 
 # Elements along an outer straight side at least.
 ALONG = 4
+# Relative difference of equal areas.
+SAME_AREA = 1e-9
 
 
 @dataclass
@@ -39,16 +41,17 @@ def chords(loop: list[Side]) -> np.ndarray:
     return np.concatenate([side.points[:-1:4 if side.curved else 1] for side in loop])
 
 
-def flat(gmsh: Any, loops: list[list[Side]], height: float) -> np.ndarray:
-    """Return the nodes (patch, 3, 3, 3) of flat patches between closed lines, the first one around the others; their
-    edges on the curves are the pieces of these. Normals point upwards."""
+def flat(gmsh: Any, loops: list[list[Side]], size: float) -> np.ndarray:
+    """Return the nodes (patch, 3, 3, 3) of flat patches at z = 0 between closed lines, the first one around the others;
+    their edges on the curves are the pieces of these, others about as long as `size` at most, mm. Normals point
+    upwards."""
     for i, loop in enumerate(loops):
         corner = chords(loop)
         if crosses(corner) or (i and not inside(corner, chords(loops[0])).all()):
             raise Problem("the flange crosses itself: take a smaller --flange, or a smaller --shoulder")
     gmsh.model.add("plane")
     try:
-        corners = meshed(gmsh, loops)
+        corners = meshed(gmsh, loops, size)
     finally:
         gmsh.model.remove()
     nodes = np.zeros((len(corners), 3, 3, 3))
@@ -56,14 +59,18 @@ def flat(gmsh: Any, loops: list[list[Side]], height: float) -> np.ndarray:
     nodes[:, ::2, ::2, :2] = square.transpose(2, 0, 1, 3)
     fit_corners(nodes, loops)
     fit_middles(nodes, loops)
-    nodes[..., 2] = height
-    area = np.cross(nodes[:, 0, 2, :2] - nodes[:, 0, 0, :2], nodes[:, 2, 0, :2] - nodes[:, 0, 0, :2])
+    a, b = nodes[:, 0, 2, :2] - nodes[:, 0, 0, :2], nodes[:, 2, 0, :2] - nodes[:, 0, 0, :2]
+    area = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
     nodes[area < 0] = nodes[area < 0][:, :, ::-1]
     return nodes
 
 
-def meshed(gmsh: Any, loops: list[list[Side]]) -> np.ndarray:
-    """Return the corners (element, 4, 2) of quadrilaterals between closed lines of chords; each chord has two."""
+def meshed(gmsh: Any, loops: list[list[Side]], size: float) -> np.ndarray:
+    """Return the corners (element, 4, 2) of quadrilaterals between closed lines of chords; each chord has two.
+
+    Gmsh's exchange and shift of elements takes nodes out of the border where two chords are near a line; it is left out
+    then.
+    """
     geo = gmsh.model.geo
     tags = []
     for loop in loops:
@@ -73,19 +80,33 @@ def meshed(gmsh: Any, loops: list[list[Side]]) -> np.ndarray:
         count = iter(lines)
         for side in loop:
             of_side = [next(count) for _ in side.points[:-1:4 if side.curved else 1]]
+            length = float(np.linalg.norm(side.points[-1] - side.points[0]))
+            pieces = 1 if side.curved else max(ALONG, int(np.ceil(length / size)))
             for line in of_side:
-                geo.mesh.setTransfiniteCurve(line, 2 if side.curved else ALONG + 1)
+                geo.mesh.setTransfiniteCurve(line, pieces + 1)
         tags.append(geo.addCurveLoop(lines))
     surface = geo.addPlaneSurface(tags)
     geo.synchronize()
     for name, value in OPTIONS.items():
         gmsh.option.setNumber(name, value)
     gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", 0)
-    extent = np.ptp(chords(loops[0]), axis=0).max()
-    gmsh.option.setNumber("Mesh.MeshSizeMax", extent / ALONG)
+    gmsh.option.setNumber("Mesh.MeshSizeMax", size)
     gmsh.option.setNumber("Mesh.MeshSizeMin", 0.0)
     gmsh.model.mesh.setSizeCallback(lambda dim, tag, x, y, z, size: size)
-    gmsh.model.mesh.generate(2)
+    within = area_of(chords(loops[0])) - sum(area_of(chords(loop)) for loop in loops[1:])
+    for exchange in (5, 0):
+        gmsh.option.setNumber("Mesh.RecombineOptimizeTopology", exchange)
+        gmsh.option.setNumber("Mesh.RecombineNodeRepositioning", bool(exchange))
+        gmsh.model.mesh.clear()
+        gmsh.model.mesh.generate(2)
+        corners = quadrilaterals(gmsh, surface)
+        if abs(sum(map(area_of, corners)) - within) <= SAME_AREA * within:
+            return corners
+    raise Problem("Gmsh's mesh of the flange does not keep to its borders: take another --flange or --shoulder")
+
+
+def quadrilaterals(gmsh: Any, surface: int) -> np.ndarray:
+    """Return the corners (element, 4, 2) of the mesh of a plane surface."""
     label, place, _ = gmsh.model.mesh.getNodes()
     row = np.zeros(int(label.max()) + 1, int)
     row[label.astype(int)] = np.arange(len(label))
@@ -93,6 +114,12 @@ def meshed(gmsh: Any, loops: list[list[Side]]) -> np.ndarray:
     if list(types) != [3]:
         raise Problem("Gmsh cannot mesh the flange")
     return np.reshape(place, (-1, 3))[row[np.reshape(members[0], (-1, 4)).astype(int)], :2]
+
+
+def area_of(corner: np.ndarray) -> float:
+    """Return the area within a closed line (n, 2)."""
+    x, y = (corner - corner[0]).T
+    return float(abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2)
 
 
 def fit_corners(nodes: np.ndarray, loops: list[list[Side]]) -> None:

@@ -5,19 +5,23 @@ from pathlib import Path
 
 import numpy as np
 
+from dd3.curve import write_curves
 from dd3.errors import Problem
 from dd3.tools.blocks import read_blocks
+from dd3.tools.set_blank import Blank
+from dd3.tools.tool_set import ToolSet
 
-# Elements of the undivided blank at most, about; least length of these over the thickness, and over the radius of the
-# shoulder; length of the smallest elements over the larger of both, with which one turns by 19 degrees on the shoulder;
-# most levels.
-ELEMENTS, OF_THICKNESS, OF_SHOULDER, SMALLEST, LEVELS = 1000, 4.0, 4 / 3, 0.25, 4
+# Elements of the undivided blank, about; length of the smallest ones over the least radius of the tools, on which one
+# turns by 19 degrees, and over the thickness at least; most levels.
+ELEMENTS, OF_RADIUS, OF_THICKNESS, LEVELS = 1000, 1 / 3, 1.0, 4
 # Pressure of the holder, MPa.
 PRESSURE = 2.0
-# Share of a level that is round-off.
-ROUND_OFF = 1e-9
-# Distance of the blank from the border of the flange, over the thickness.
-INSET = 2.0
+# Density of steel, of which the weight is told without a material, t/mm3.
+STEEL_DENSITY = 7.85e-9
+# Distance from the sheet at which the holder is pressed, over the thickness.
+SHORT = 0.1
+# Least force of a pad over that of the holder: the sheet slides on the side that is held less.
+OF_HOLDER = 2.0
 STEEL = """# Replace this by your material; dd3 identify makes one from measurements.
 *MATERIAL steel
   young = 2.1e5
@@ -25,7 +29,7 @@ STEEL = """# Replace this by your material; dd3 identify makes one from measurem
   yield = von_mises
   hardening = swift K=530 Y0=150 n=0.22"""
 DECK = """# Draws {part} and releases it; tools by {command}
-# The flange of the die is at z = 0; the punch starts at the blank and moves down.
+# The highest point of the die's binder is at z = 0; the punch starts at the blank and moves down.
 *TITLE
   {part}
 
@@ -36,8 +40,7 @@ DECK = """# Draws {part} and releases it; tools by {command}
   levels = {levels}            # which are divided where the tools are curved, down to {smallest:.2g} mm
   points = 5            # through the thickness
   depth = {travel}
-  holder = {holder}     # N, {pressure:g} MPa on the flange
-  friction = 0.1
+{forces}  friction = 0.1
 
 {material}
 
@@ -49,39 +52,15 @@ DECK = """# Draws {part} and releases it; tools by {command}
   element = solid_shell
   thickness_points = ${{points}}
   material = {name}
+{cut}
+{tools}*CONTACT
 
-*TOOL punch
-  patches = "${{tools}}/punch.bez"
-  friction = ${{friction}}
-  contact = z_max
-
-*TOOL die
-  patches = "${{tools}}/die.bez"
-  friction = ${{friction}}
-  contact = z_min
-
-*TOOL holder
-  patches = "${{tools}}/holder.bez"
-  friction = ${{friction}}
-  contact = z_max
-
-*CONTACT
-
-# The middle of the blank does not move sideways.
-*SET middle
-  near = {middle} 0
-
-*BOUNDARY middle
-  set = middle
-  fix = x y
-
-*PHASE clamp
+{support}{closing}*PHASE clamp
   control = load
   trial = 1.0
   hold = die
   hold = punch
-  press = holder 0 0 ${{holder}}
-
+{presses}
 *PHASE draw
   control = punch
   trial = 1.0
@@ -93,22 +72,85 @@ DECK = """# Draws {part} and releases it; tools by {command}
 *OUTPUT
   fields = every 5 mm
 """
+TOOL = """*TOOL {name}
+  patches = "${{tools}}/{name}.bez"
+  friction = ${{friction}}
+  contact = {contact}
+
+"""
+CONTACT = {"punch": "z_max", "die": "z_min", "holder": "z_max", "pad": "z_min"}
+# Friction holds the sheet sideways, once the holder or a pad is on it.
+SUPPORT = """# The middle of the blank does not move sideways while the holder closes.
+*SET middle
+  near = {middle} 0
+
+*BOUNDARY middle
+  set = middle
+  fix = x y
+
+"""
+BLANK = "blank.txt"  # outline of the blank
+CUT = """
+*TRIM blank
+  file = "{file}"
+"""
+CLOSING = """# The holder bends the blank onto the die.
+*PHASE close
+  control = holder
+  trial = 1.0
+  hold = die
+  hold = punch
+  move = holder 0 0 -{closing:.6g}
+
+"""
 
 
-def deck(options: argparse.Namespace, material: str, plan: np.ndarray, travel: float, area: float, command: str) -> str:
-    """Return the input file: name of the material, box of the flange in plan (2, 2), travel of the punch (mm), area of
-    the flange (mm2), the command that made the tools."""
-    low, high = plan[0] + INSET * options.thickness, plan[1] - INSET * options.thickness
-    least = max(OF_THICKNESS * options.thickness, OF_SHOULDER * options.shoulder)
-    length = max(least, float(np.prod(high - low) / ELEMENTS)**0.5)
+def deck(options: argparse.Namespace, material: str, tools: ToolSet, command: str) -> str:
+    """Return the input file: name of the material, tools, the command that made these."""
+    low, high = tools.blank.box
+    smallest = max(OF_RADIUS * tools.radius, OF_THICKNESS * options.thickness)
+    levels = int(np.clip(np.ceil(np.log2((tools.blank.area / ELEMENTS)**0.5 / smallest)), 0, LEVELS))
+    length = 2**levels * smallest
     divisions = [2 * int(np.ceil(side / length / 2)) for side in high - low]
-    levels = min(LEVELS, int(np.ceil(np.log2(length / (SMALLEST * least)) - ROUND_OFF)))
     include = f'*INCLUDE "{options.material.resolve()}"' if options.material else STEEL
+    pressed = {name: PRESSURE * tools.area[name] for name in ("holder", "pad") if name in tools.surfaces}
+    if "pad" in pressed:
+        pressed["pad"] = max(pressed["pad"], OF_HOLDER * pressed.get("holder", 0.0))
+    forces = [f"  {name} = {force:.3g}     # N, {force / tools.area[name]:.2g} MPa\n"
+              for name, force in pressed.items()]
+    presses = [f"  press = {name} 0 0 {'-' if name == 'holder' else ''}${{{name}}}\n" for name in pressed]
+    closing = CLOSING.format(closing=tools.closing - SHORT * options.thickness) if tools.closing else ""
     return DECK.format(part=options.source.stem, command=command, thickness=f"{options.thickness:g}",
                        divisions=f"{divisions[0]} {divisions[1]} 1", length=length,
-                       levels=levels, smallest=length / 2**levels, travel=f"{travel:.6g}",
-                       holder=f"{-PRESSURE * area:.3g}", pressure=PRESSURE, material=include, name=material,
-                       origin=pair(low), size=pair(high - low), middle=pair((low + high) / 2))
+                       levels=levels, smallest=smallest, travel=f"{tools.travel:.6g}", forces="".join(forces),
+                       cut=CUT.format(file=BLANK) if tools.blank.cut else "",
+                       material=include, name=material, origin=pair(low), size=pair(high - low),
+                       tools="".join(TOOL.format(name=name, contact=CONTACT[name]) for name in tools.surfaces),
+                       support=SUPPORT.format(middle=pair((low + high) / 2)) if tools.closing else "",
+                       closing=closing, presses="".join(presses))
+
+
+def write_blank(folder: Path, blank: Blank, part: str) -> None:
+    """Write the outline of a blank that is cut along it."""
+    if blank.cut:
+        write_curves(folder / BLANK, [np.column_stack([blank.outline, np.zeros(len(blank.outline))])],
+                     f"outline of the blank of {part}")
+
+
+def said(options: argparse.Namespace, blank: Blank) -> str:
+    """Return size, area and weight of a blank in words."""
+    density, of = density_in(options.material) if options.material else None, ""
+    if density is None:
+        density, of = STEEL_DENSITY, " of steel"
+    weight = 1e6 * blank.area * options.thickness * density
+    x, y = np.ptp(blank.box, axis=0)
+    return f"{x:.4g} x {y:.4g} mm, {blank.area:.4g} mm2, {weight:.3g} g{of}" + (f", cut along {BLANK}" if blank.cut else "")
+
+
+def density_in(path: Path) -> float | None:
+    """Return the density of the material of a file, t/mm3, None if it has none."""
+    text = next(block.value("density") for block in read_blocks(path) if block.keyword == "material")
+    return float(text) if text else None
 
 
 def pair(values: np.ndarray) -> str:

@@ -24,16 +24,19 @@ EXACT = 1e-13
 
 @dataclass
 class Surface:
-    """Patches in homogeneous control points (patch, v, u, 4): w x, w y, w z, w; the face of each, and their names."""
+    """Patches in homogeneous control points (patch, v, u, 4): w x, w y, w z, w; the face of each, and their names; unit
+    normals at the nodes (patch, v, u, 3), where those of the CAD are known."""
 
     net: np.ndarray
     face: np.ndarray
     names: list
     notes: list = field(default_factory=list)  # lines of the report
+    normals: np.ndarray | None = None
 
     def select(self, chosen: np.ndarray) -> Surface:
         """Return the surface of some patches."""
-        return Surface(self.net[chosen], self.face[chosen], self.names, self.notes)
+        return Surface(self.net[chosen], self.face[chosen], self.names, self.notes,
+                       None if self.normals is None else self.normals[chosen])
 
 
 def joined(surfaces: list[Surface]) -> Surface:
@@ -84,6 +87,12 @@ def areas_at(net: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
     slope_u = (along_u[..., :3] - along_u[..., 3:] * point) / weight
     slope_v = (along_v[..., :3] - along_v[..., 3:] * point) / weight
     return np.cross(slope_u, slope_v)
+
+
+def normals_at_nodes(net: np.ndarray) -> np.ndarray:
+    """Return the unit normals of patches at their 3 x 3 nodes (patch, 3, 3, 3), zero where there is none."""
+    area = areas_at(net, *grid(3))
+    return np.asarray(area / np.maximum(np.linalg.norm(area, axis=2, keepdims=True), 1e-300)).reshape(-1, 3, 3, 3)
 
 
 def grid(count: int) -> tuple[np.ndarray, np.ndarray]:

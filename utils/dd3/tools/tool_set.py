@@ -1,50 +1,74 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Punch, die and holder of a part, and an input file that draws it.
 
-The part is the surface of the drawn sheet that the punch touches, or the die; it has neither shoulder nor flange. The
-punch comes from above. The other tool is at the distance of the thickness and the clearance. From the rims of the die
-its walls go on, ruled along the steepest ascent, to a shoulder and a flat flange, which is at z = 0.
+The part is the surface of the drawn sheet that the punch touches, or the die. The punch comes from above. The other
+tool is at the distance of the thickness and the clearance. The part's own flange lies on the binder, which is on the
+die and under the holder; where the part ends on a wall, the wall of the die goes on to a shoulder and the binder. The
+highest point of the binder is at z = 0.
 """
 import argparse
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from dd3.errors import Problem
-from dd3.tools import cad, report, sides
-from dd3.tools.joints import box_of, find_joints, orient, turn
+from dd3.tools import cad, own_flange, report, sides
+from dd3.tools.die_face import INSET, Face, Reach, TooLong, consistent, even, flange, with_face
+from dd3.tools.faces import spans
+from dd3.tools.joints import box_of, find_joints
 from dd3.tools.moved import placed, rotation
 from dd3.tools.offset import at_distance
-from dd3.tools.plane import Side, box, flat, straight
-from dd3.tools.rims import Rim, find_rims, patches, rise, shoulder, wall
-from dd3.tools.surface import Surface, area_vectors, from_nodes, turned
+from dd3.tools.rims import Rim, border_rims, find_rims, lengths, patches, wall
+from dd3.tools.set_blank import Blank
+from dd3.tools.surface import Surface, from_nodes, turned
 
-# Defaults over the thickness: clearance, radius of the shoulder, width of the flange.
-CLEARANCE, SHOULDER, FLANGE = 0.1, 6.0, 40.0
-# Height over the thickness that the shortest ruled wall has, where one is needed.
-SHORTEST = 0.5
+# Defaults over the thickness: clearance, radius of the shoulder, margin of the blank.
+CLEARANCE, SHOULDER, MARGIN = 0.1, 6.0, 5.0
+# Part of the projected area that is seen from the punch which may be left out.
+LEFT_OUT = 0.05
+# Part of the length of the rims by which their directions outwards do not cancel, above which there is a pad.
+ONE_SIDED = 0.3
+# Times a part is meshed at most.
+MESHED = 4
+# Least slope, sine, at which a wall of the punch that ends at a flange goes on upwards.
+STEEP = 0.5
+# Part of the least radius below which a radius is smaller: fillets of just that radius are not.
+JUST = 0.999
 DOWN = np.array([0.0, 0.0, -1.0])
 
 
 @dataclass
 class ToolSet:
-    """Surfaces by the names of the tools, with the die's flange at z = 0 and the punch at the start of its travel; the
-    travel, mm; the box of the flange in plan (2, 2) and the area of the holder, mm2; the largest distances of
-    the faces of punch and die from the CAD, mm; lines of the report."""
+    """Surfaces by the names of the tools, with the highest point of the binder at z = 0, punch and holder at the start
+    of their travels; these travels, the height by which the part was moved into the die, the least radius of the die's
+    shoulder and that of all faces of punch and die, mm; the blank, and the areas in plan of the tools over it, mm2; the
+    largest distances of the faces of punch and die from the CAD, mm; lines of the report."""
 
     surfaces: dict[str, Surface] = field(default_factory=dict)
     travel: float = 0.0
-    plan: np.ndarray = field(default_factory=lambda: np.zeros((2, 2)))
-    area: float = 0.0
+    closing: float = 0.0
+    height: float = 0.0
+    shoulder: float = 0.0
+    radius: float = 0.0
+    blank: Blank = field(default_factory=lambda: Blank(np.zeros((0, 2)), False))
+    area: dict[str, float] = field(default_factory=dict)
     distance: dict[str, np.ndarray] = field(default_factory=dict)
     lines: list[tuple[str, str]] = field(default_factory=list)
 
 
-def both_sides(gmsh: Any, options: argparse.Namespace, progress: Any) -> tuple[Surface, Surface, dict[str, np.ndarray]]:
-    """Return the surfaces of the punch and the die in the closed press, both with normals upwards, into the cavity, and
-    the largest distances of their faces from the CAD by the names of the tools, mm."""
-    model = cad.read_cad(gmsh, options.source, options, progress)
+def both_sides(gmsh: Any, options: argparse.Namespace, progress: Any
+              ) -> tuple[Surface, Surface, dict[str, np.ndarray], list[str]]:
+    """Return the surfaces of the punch and the die in the closed press, both with normals upwards, into the cavity, the
+    largest distances of their faces from the CAD by the names of the tools, mm, and the roles of the faces."""
+    gap = options.thickness + options.clearance
+    fine, least = argparse.Namespace(**vars(options)), options.radius
+    if options.sharp:  # an offset enlarges what the patches of the fillets are off the CAD
+        fine.tolerance *= options.radius / (options.radius + gap)
+        least *= JUST
+    model = cad.read_cad(gmsh, options.source, fine, progress)
+    refuse_left_out(model, options)
     surface = cad.surface_of(model)
     matrix = rotation(options.rotate)
     up = matrix.T @ -DOWN
@@ -54,106 +78,132 @@ def both_sides(gmsh: Any, options: argparse.Namespace, progress: Any) -> tuple[S
     notes = model.notes + notes
     if not kept.all():
         notes.append("left out: faces that look downwards: " + report.named(surface, np.unique(model.face[~kept])))
-    gap = options.thickness + options.clearance
     found, distance = [], {}
     for name, ahead in (("punch", 1), ("die", -1)):
         shift = 0.0 if options.side == name else ahead * gap
-        tool, distance[name] = at_distance(gmsh, model, sign, kept, shift, options.radius, ahead, options.tolerance)
+        tool, distance[name] = at_distance(gmsh, model, sign, kept, shift, least, ahead, options.tolerance)
         tool.net = placed(tool.net, matrix, options.move)
+        tool.normals = None if tool.normals is None else tool.normals @ matrix.T
         tool.notes = notes + tool.notes
         notes = []
         found.append(tool)
-    return found[0], found[1], distance
+    return found[0], found[1], distance, [options.roles.get(tag, "") for tag in model.origin]
+
+
+def refuse_left_out(model: cad.Model, options: argparse.Namespace) -> None:
+    """Refuse a choice of faces, not made by the user, that leaves out a part of what is seen from the punch."""
+    if options.faces or options.taken:
+        return
+    left = {tag: area for tag, area in options.visible.items() if tag not in model.origin}
+    part = sum(left.values()) / max(sum(options.visible.values()), 1e-300)
+    if part > LEFT_OUT:
+        raise Problem(f"{100 * part:.3g} % of what is seen of the tool are left out, faces {spans(list(left))}, as "
+                      f"they do not join the others smoothly: --faces {spans(list(options.visible))} takes them too, "
+                      "or choose those that one tool touches")
 
 
 def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
-    """Return the tools of a part."""
-    punch, die, distance = both_sides(gmsh, options, progress)
-    result = ToolSet(distance=distance, lines=[("", note) for note in punch.notes + die.notes])
-    rims, others = find_rims(die, find_joints(die.net))
-    if not rims:
-        raise Problem(f"{options.source}: no free edge of the part at which it climbs by more than 10 degrees, as the "
-                      f"punch moves along -z into the part{options.advice}")
-    if others:
-        result.lines.append(("edges", f"{others} free edges of patches stay open, as the part does not climb there"))
-    face = max(float((rim.points[:, 2] + rise(rim, options.shoulder)).max()) for rim in rims)
-    missing = max(float((face - rim.points[:, 2] - rise(rim, options.shoulder)).max()) for rim in rims)
-    level = missing <= options.tolerance
-    if not level:
-        face += SHORTEST * options.thickness
-        result.lines.append(("walls", f"continued up to {missing + SHORTEST * options.thickness:.3g} mm to the "
-                             "shoulder"))
-    die, inner = with_flange(gmsh, die, rims, face, level, options)
-    top = face + options.thickness
-    over = flange(gmsh, rims, inner, top, options.flange)
-    holder = Surface(turned(from_nodes(over)), np.zeros(len(over), int), ["holder"])
-    punch = with_walls(punch, top)
-    low, high = box_of(die.net)
-    result.plan = np.array([low[:2], high[:2]])
-    result.area = float(np.linalg.norm(area_vectors(holder.net).sum(axis=0)))
-    result.travel = float(top - report.extent(punch.net)[0][2])
-    for name, surface, height in (("punch", punch, result.travel - face), ("die", die, -face),
-                                  ("holder", holder, -face)):
+    """Return the tools of a part; where the patches along its rim are too long for the die face, it is meshed again."""
+    options = argparse.Namespace(**vars(options), longest=np.inf)
+    for _ in range(MESHED):
+        punch, die, distance, roles = both_sides(gmsh, options, progress)
+        own = own_flange.labels_of(die, roles, shoulder=False)
+        try:
+            face = with_face(gmsh, own_flange.trimmed(die, own), options)
+            break
+        except TooLong as error:
+            options.longest = error.length
+    else:
+        raise Problem(f"{options.source}: the binder at the rim of the part is curved too strongly")
+    notes = punch.notes + die.notes
+    result = ToolSet(distance=distance, lines=[("", note) for note in notes] + face.lines)
+    punch, curves = with_walls(own_flange.trimmed(punch, own_flange.labels_of(punch, roles, shoulder=True)), face,
+                               options)
+    beside = own_flange.labels_of(die, roles, shoulder=True) - own
+    result.shoulder = min(options.shoulder if len(own) == 0 else np.inf, own_flange.least_radius(die, beside))
+    if beside:
+        result.lines.append(("shoulder", f"of the part, radius {result.shoulder:.3g} mm on the die"))
+    result.radius = min(result.shoulder, *(own_flange.least_radius(tool, range(len(tool.names)))
+                                           for tool in (punch, face.surface)))
+    inset = INSET * options.thickness
+    low, high = box_of(face.surface.net)
+    result.blank = face.blank.within(np.array([low[:2] + inset, high[:2] - inset]))
+    top = float(report.extent(face.surface.net[face.surface.face == len(face.surface.names) - 1])[1][2])
+    over = top + options.thickness
+    result.height = -top
+    result.travel = float(over - report.extent(punch.net)[0][2])
+    others = {"punch": (punch, result.travel - top), "die": (face.surface, -top)}
+    floor = np.isin(face.surface.face, [label for label, role in enumerate(roles) if role == "floor"])
+    pad = floor.any() and one_sided(face)
+    if pad:
+        part = face.surface.select(floor)
+        others["die"] = face.surface.select(~floor), -top
+        others["pad"] = part, -float(report.extent(part.net)[1][2])
+        result.lines.append(("pad", "under the floor, as the part is formed on one side of it only"))
+    if not pad or any(reach.own for reach in face.reaches):
+        holder = holder_of(gmsh, face, curves, options)
+        closing = float(over - report.extent(holder.net)[0][2])
+        result.closing = closing if closing > options.tolerance else 0.0
+        others["holder"] = holder, result.closing - top
+    for name, (surface, height) in others.items():
+        result.area[name] = result.blank.pressed(surface)
         surface.net = placed(surface.net, np.eye(3), (0.0, 0.0, height))
         result.surfaces[name] = surface
     return result
 
 
-def with_flange(gmsh: Any, die: Surface, rims: list[Rim], face: float, level: bool, options: argparse.Namespace
-                ) -> tuple[Surface, list[np.ndarray]]:
-    """Return the die with shoulder and flange, which is at the height `face`, and the nodes of the rims at which the
-    shoulder begins; with ruled walls up to there unless the rims are level."""
-    radius = options.shoulder
-    nets, inner, outer = [die.net], [], []
-    for rim in rims:
-        rows = [] if level else wall(rim, (face - rim.points[:, 2] - rise(rim, radius)) / rim.climb[:, 2])
-        inner.append(rows[-1] if rows else rim.points)
-        rows += shoulder(rim, inner[-1], radius, options.tolerance / 2)
-        rows[-1][:, 2] = face
-        nets.append(patches([rim.points, *rows]))
-        outer.append(rows[-1])
-    nets.append(from_nodes(flange(gmsh, rims, outer, face, options.flange)))
-    added = len(die.names)
-    labels = np.concatenate([die.face, np.repeat([added, added + 1], [sum(map(len, nets[1:-1])), len(nets[-1])])])
-    return consistent(Surface(np.concatenate(nets), labels, [*die.names, "shoulder", "flange"])), inner
+def one_sided(face: Face) -> bool:
+    """Tell whether walls or flanges pull the sheet to one side."""
+    pull, total = np.zeros(3), 0.0
+    for reach in face.reaches:
+        length = np.linalg.norm(np.diff(reach.rim.points, axis=0), axis=1)
+        pull += length @ (reach.rim.out[1:] + reach.rim.out[:-1]) / 2
+        total += length.sum()
+    return bool(np.linalg.norm(pull) > ONE_SIDED * total)
 
 
-def with_walls(punch: Surface, top: float) -> Surface:
-    """Return the punch, whose normals are upwards, with its walls continued to a height, and its normals downwards."""
-    rims, _ = find_rims(punch, find_joints(punch.net))
-    nets = [punch.net]
-    for rim in rims:
-        length = (top - rim.points[:, 2]) / rim.climb[:, 2]
+def with_walls(part: own_flange.Trimmed, face: Face, options: argparse.Namespace
+               ) -> tuple[Surface, list[tuple[Rim, np.ndarray]]]:
+    """Return the punch, whose normals are upwards, with its walls continued to the height of the holder, and its
+    normals downwards; and its rims, with the curves where it ends."""
+    punch, joints = part.surface, find_joints(part.surface.net)
+    walls = [(rim, True) for rim in find_rims(punch, joints, part.border)[0]]
+    walls += [(rim, bool(rim.climb[:, 2].min() > STEEP)) for rim in border_rims(punch, joints, part.border, False)]
+    nets, curves = [punch.net], []
+    for rim, goes_on in walls:
+        curve = rim.points
+        reach = nearest(face, rim)
+        length = lengths(rim, reach.binder.raised(options.thickness), 0.0) if goes_on else np.zeros(len(curve))
         if length.min() > 0.0:
-            nets.append(patches([rim.points, *wall(rim, length)]))
-    face = np.concatenate([punch.face, np.full(sum(map(len, nets[1:])), len(punch.names))])
-    whole = consistent(Surface(np.concatenate(nets), face, [*punch.names, "wall"]))
-    return Surface(turned(whole.net), whole.face, whole.names)
+            rows = wall(rim, length)
+            nets.append(patches([rim.points, *rows]))
+            curve = rows[-1]
+        curves.append((rim, curve))
+    label = np.concatenate([punch.face, np.full(sum(map(len, nets[1:])), len(punch.names))])
+    whole = consistent(Surface(np.concatenate(nets), label, [*punch.names, "wall"]))
+    return Surface(turned(whole.net), whole.face, whole.names), curves
 
 
-def consistent(surface: Surface) -> Surface:
-    """Return the surface with all patches turned as the first one."""
-    sign, _, _ = orient(surface.net, find_joints(surface.net))
-    surface.net = turn(surface.net, sign)
-    return surface
+def nearest(face: Face, rim: Rim) -> Reach:
+    """Return the rim of the die that is nearest to a rim of the punch."""
+    return min(face.reaches, key=lambda reach: cKDTree(reach.rim.points).query(rim.points)[0].mean())
 
 
-def flange(gmsh: Any, rims: list[Rim], curves: list[np.ndarray], height: float, width: float) -> np.ndarray:
-    """Return the nodes (patch, 3, 3, 3) of a flat flange around closed rims and beside open ones, from curves that
-    belong to these; normals upwards."""
-    for curve in curves:
-        if len(curve) % 4 != 1:  # an odd number of patches, beside which the mesh of the flange cannot be
-            raise Problem("an edge climbs by more than 10 degrees along a part of it only, up to near x y z = "
-                          + report.where(curve[-1]) + ": divide it there in the CAD program")
-    nodes = []
-    closed = [curve for rim, curve in zip(rims, curves) if rim.closed]
-    if closed:
-        outline = box(np.concatenate(closed)[:, :2], width)
-        nodes.append(flat(gmsh, [outline, *([Side(curve[:, :2], True)] for curve in closed)], height))
-    for rim, curve in zip(rims, curves):
-        if not rim.closed:
-            start, end = curve[0, :2], curve[-1, :2]
-            far_start, far_end = start + width * rim.out[0, :2], end + width * rim.out[-1, :2]
-            nodes.append(flat(gmsh, [[Side(curve[:, :2], True), straight(end, far_end), straight(far_end, far_start),
-                                      straight(far_start, start)]], height))
-    return np.concatenate(nodes)
+def holder_of(gmsh: Any, face: Face, curves: list[tuple[Rim, np.ndarray]], options: argparse.Namespace) -> Surface:
+    """Return the holder on the sheet on the binder, as wide as the die, and inwards up to the clearance between die
+    and punch, normals downwards."""
+    gap = options.thickness + options.clearance
+    reaches, inner = [], []
+    for rim, curve in curves:
+        reach = nearest(face, rim)
+        moved = even(curve + gap * rim.out)
+        moved[:, 2] = reach.binder.z(moved[:, :2])
+        reaches.append(reach)
+        inner.append(moved)
+    nodes = flange(gmsh, replace(face, reaches=reaches), inner, options.tolerance / 2)
+    normal = np.zeros_like(nodes)
+    for reach in reaches:
+        chosen = np.abs(reach.binder.z(nodes[..., :2]) - nodes[..., 2]) < options.tolerance
+        normal[chosen] = reach.binder.normal(nodes[..., :2])[chosen]
+    nodes = nodes + options.thickness * normal
+    return Surface(turned(from_nodes(nodes)), np.zeros(len(nodes), int), ["holder"])

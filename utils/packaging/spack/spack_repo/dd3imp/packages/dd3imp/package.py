@@ -13,7 +13,7 @@ class Dd3imp(CMakePackage):
 
     license("GPL-3.0-or-later")
 
-    version("2.6.0")
+    version("2.7.0")
 
     variant("mumps", default=False, description="Direct solver MUMPS, sequential")
 

@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Die faces of parts: punch and die against both sides of the part, the binder, joints and folds, choices and refusals."""
+
+import numpy as np
+import pytest
+from helpers import call
+from part_set import PARTS, write
+from scipy.spatial import cKDTree
+from test_tool_surfaces import read
+
+from dd3.gmsh_session import session
+from dd3.part.reading import Request, read_part
+from dd3.tools.binder import developable, inclined, level, of_points
+from dd3.tools.joints import find_joints, folded, kinks
+from dd3.tools.patch_distance import Distance
+
+NAMES = ["own_flange", "hat", "pan", "island_tray", "sharp_tray", "sharp_hat", "stepped_hat", "arched_rail", "z_section",
+         "s_rim_tray", "saddle_tray"]
+CLEARANCE = 0.1
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Write the parts."""
+    folder = tmp_path_factory.mktemp("die_faces")
+    write(folder, [*NAMES, "crowned_block", "milled"])
+    return folder
+
+
+def sampled(path, toward):
+    """Return the reading of a part, the least height of its upper side, points of the faces of this, away from sharp
+    edges, with the role of each, and points of its lower side, in the frame of the press."""
+    with session() as gmsh:
+        reading = read_part(gmsh, Request(path, toward=toward))
+    shape, direction = reading.shape, reading.direction
+    turn = np.diag([1, -1, -1]) if toward[2] < 0 else np.eye(3)
+    sharp = [number for number, edge in shape.edges.items() if edge.angle
+             and set(edge.faces) <= set(reading.sheet.sides[0] + reading.sheet.sides[1])]
+    on_edge = np.unique(shape.pieces[np.isin(shape.piece_edge, sharp)])
+    points = shape.place @ turn.T
+    far = np.ones(len(points), bool)
+    if len(on_edge):
+        start, end = (shape.nodes[shape.pieces[np.isin(shape.piece_edge, sharp)][:, k]] for k in (0, 1))
+        line = np.concatenate([start + t * (end - start) for t in np.linspace(0, 1, 40)])
+        far = cKDTree(line).query(shape.place)[0] > 4.0 * reading.sheet.thickness
+    upper = np.isin(shape.face, direction.upper)
+    rims = np.isin(shape.face, reading.sheet.rims)
+    role = np.array([reading.roles[tag].name if tag in reading.roles else "" for tag in shape.face])
+    low = (shape.nodes[shape.triangles[upper]] @ turn.T)[..., 2].min()
+    return reading, low, points[upper & far], role[upper & far], points[~upper & ~rims & far]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_faces(folder, tmp_path, name):
+    """Check punch and die in the closed press against both sides of the part, and the surfaces themselves."""
+    toward = (0, 0, -1) if PARTS[name].toward == (0, 0, -1) else (0, 0, 1)
+    target = tmp_path / "tools"
+    said = call("tool", folder / f"{name}.step", target, "--toward", *toward)
+    travel = float(said.split("travel")[1].split()[0])
+    reading, low, upper, role, lower = sampled(folder / f"{name}.step", toward)
+    thickness = reading.sheet.thickness
+    net = {tool: read(target / f"{tool}.bez") for tool in ("punch", "die", "holder")}
+    pad = target / "pad.bez"
+    assert pad.exists() == (name == "z_section")
+    for own in net.values():
+        assert not len(folded(own))
+    # A shoulder beside a rim that is not level has a kink where the rim's curvature in plan jumps.
+    angle = np.sort(kinks(net["die"], find_joints(net["die"])))
+    assert angle[-2] < (2.5 if name in ("s_rim_tray", "saddle_tray") else 1.0), angle[-5:]
+    punch = Distance(net["punch"], 1.0)
+    # The punch stands on the sheet at the start, at the height of the thickness.
+    shift = low - thickness
+    touched = ~np.isin(role, ["flange", "shoulder"]) if "flange" in role else np.ones(len(role), bool)
+    off = distance(punch, upper[touched] - (0, 0, shift))
+    assert off.max() < 0.003, off.max()
+    # In the closed press the die is at the gap from the upper side, at the clearance from the lower one.
+    down = (0, 0, low - thickness + travel)
+    die = Distance(np.concatenate([net["die"], lowered(pad, travel, thickness)]), 1.0)
+    gap = thickness * (1 + CLEARANCE)
+    assert np.abs(distance(die, upper - down) - gap).max() < 0.003
+    assert np.abs(distance(die, lower - down) - CLEARANCE * thickness).max() < 0.003
+
+
+def distance(surface, points):
+    """Return the distances of points from a surface."""
+    return np.linalg.norm(surface.nearest(points)[0] - points, axis=1)
+
+
+def lowered(path, travel, thickness):
+    """Return the patches of a pad where the die's floor is, none without one."""
+    if not path.exists():
+        return np.zeros((0, 3, 3, 4))
+    net = read(path)
+    net[..., 2] -= (travel + CLEARANCE * thickness) * net[..., 3]
+    return net
+
+
+def test_binders():
+    """Check the kinds of binders against points of known surfaces, and what goes on beyond them."""
+    x, y = (part.ravel() for part in np.meshgrid(np.linspace(-60, 60, 41), np.linspace(-20, 20, 9)))
+    assert of_points(np.stack([x, y, 0 * x + 3], axis=1), 1e-6).kind == "level"
+    tilted = of_points(np.stack([x, y, 0.1 * x - 0.05 * y + 2], axis=1), 1e-6)
+    assert tilted.kind == "an inclined plane" and np.allclose(tilted.gradient(np.array([[500.0, -300.0]])), [0.1, -0.05])
+    # A cylinder about an axis at 30 degrees in plan that rises along it.
+    across, along = np.cos(0.5) * x + np.sin(0.5) * y, np.cos(0.5) * y - np.sin(0.5) * x
+    arc = np.stack([x, y, np.sqrt(300.0**2 - across**2) - 300 + 0.05 * along], axis=1)
+    found = of_points(arc, 0.002)
+    assert found.kind == "developable" and abs(found.across @ (np.cos(0.5), np.sin(0.5))) > 1 - 1e-6
+    assert abs(found.slope * np.sign(found.across[0]) - 0.05) < 1e-4
+    beyond = np.array([np.cos(0.5), np.sin(0.5)]) * np.linspace(50, 200, 601)[:, None]
+    step = np.diff(found.z(beyond)) / 0.25
+    assert np.abs(np.diff(step)).max() < 1.5 * 0.25 / 300 and np.abs(np.diff(step)[300:]).max() < 1e-12
+    slope = (found.gradient(beyond) @ (np.cos(0.5), np.sin(0.5)))
+    assert np.abs((slope[1:] + slope[:-1]) / 2 - step).max() < 1e-5
+    assert of_points(np.stack([x, y, x * y / 200], axis=1), 0.002) is None
+    assert inclined(arc).distance(arc) > found.distance(arc) and level(0.0).z(np.zeros(2)) == 0.0
+    assert developable(arc).distance(arc) < 0.1
+
+
+def test_choices(folder, tmp_path):
+    """Check a least radius for sharp edges, the lower side, the width of the holder, and refusals."""
+    said = call("tool", folder / "sharp_tray.step", tmp_path / "round", "--radius", 3)
+    assert "sharp edges rounded by 3 mm" in said, said
+    call("tool", folder / "own_flange.step", tmp_path / "lower", "--side", "die", "--flange", 5)
+    die, holder = read(tmp_path / "lower" / "die.bez"), read(tmp_path / "lower" / "holder.bez")
+    # The part's own flange ends 54 mm from the middle; a blank as wide has a margin of the die and the holder.
+    assert die[..., 0].max() > 56 and abs(die[..., 0].max() - holder[..., 0].max()) < 1e-6
+    assert "of what is seen of the tool are left out, faces 1-4 6" in call(
+        "tool", folder / "milled.step", tmp_path / "milled", "--thickness", 1, expect=2)

@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A part without holes, notches and lanced forms, as CAD that tools are made of; and its true rims as curves.
+
+The faces keep their surfaces: wires are taken out of them and edges go on over an opening (see `filling`). That is done
+on both sides of a solid, and the faces through its thickness are left out. Notches of a solid, and holes for which that
+does not do, such as one over a whole radius, are taken out of the solid by OpenCASCADE, which extends the faces around
+them until they meet. If both fail, or of a surface, only the side that the tools touch is kept.
+"""
+import tempfile
+from collections import Counter
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from dd3.part.filling import SAME, Side
+from dd3.part.openings import Opening, curves_of, middle, openings_of
+from dd3.part.reading import Fault, Reading
+from dd3.part.shape import Shape
+from dd3.tools.brep import Topology
+from dd3.tools.cad import silence
+from dd3.tools.limits import limited
+
+# Relative difference of areas that are equal.
+EQUAL = 1e-6
+# Size of a hole over that of the part from which on it is not taken out of the solid, as faces extended that far meet
+# nowhere or far away, and may stay open.
+LARGE = 0.5
+# Distance over the size of the part by which edges of faces that were extended may be outside of its box.
+BEYOND = 0.01
+# Distance over that of equal points within which an edge is on its faces; points of an edge where that is measured.
+ON_FACE, PLACES = 10.0, 33
+# Processor time after which OpenCASCADE is given up, s.
+TIME = 60.0
+
+
+@dataclass
+class Closed:
+    """A part whose side is closed, a solid if it was one: text of its BREP file; the numbers in the part of the faces
+    of the file, and the tags of those of the side; the edges of the side by their numbers in the part; the openings
+    that were filled; the true rims of the side, the outer one first, those of lanced forms left out, in the coordinates
+    of the part, mm; notes on the file that the part was read from."""
+
+    text: str
+    numbers: dict[int, int]
+    taken: list[int]
+    edges: dict[int, int]
+    openings: list[Opening]
+    curves: list[np.ndarray]
+    notes: list[str]
+
+    def load(self, gmsh: Any) -> None:
+        """Read the part."""
+        read_text(gmsh, self.text)
+
+
+def closed_part(gmsh: Any, reading: Reading, faces: list[int]) -> Closed | None:
+    """Return a part whose side with the faces given is closed, None if it is so already. What cannot be filled is a
+    fault of the reading. The session has the part as it was read."""
+    shape = reading.shape
+    openings, outer = openings_of(gmsh, shape, faces)
+    if not openings:
+        return None
+    both = [openings_of(gmsh, shape, side) for side in reading.sheet.sides]
+    curves = curves_of(gmsh, reading.path, shape, faces)
+    inside = {tuple(middle(gmsh, edge)): edge for edge in shape.edges_inside(faces)}
+    left: list[Opening] = []
+    with silence():
+        whole = side_of(gmsh, shape, written_by(gmsh), set(shape.tags), outer)
+        text, _, _ = whole.result({})  # without other parts of the file
+        side = closed_solid(gmsh, reading, text, whole, both)
+        if side is None:
+            side = side_of(gmsh, shape, text, set(faces), outer)
+            left = side.filled(openings)
+    large = [opening for opening in left if opening.size > LARGE * shape.size]
+    for opening in left:
+        if any(opening is one for one in large):
+            continue
+        reading.faults.append(Fault(f"{opening.said} is not filled, as faces end there that do not go on behind it: "
+                                    "close it in the CAD program, or choose faces by --faces", opening.faces,
+                                    opening.edges))
+    rims = len(side.loops(set(faces)))
+    if len(left) == len(large) and rims != 1 + len(large):
+        reading.faults.append(Fault(f"{rims} rims are left after {len(openings)} openings were filled: close them in "
+                                    "the CAD program, or choose faces by --faces"))
+    found = [one.words for one in openings if not any(one is other for other in left)]
+    notes = [*reading.left_out, *reading.notes, *([f"filled: {summary(found)}"] if found else []),
+             *(f"left open, as it is larger than half of the part: {opening.said}" for opening in large)]
+    text, numbers, edges = side.result(inside)
+    if side.continued and (off := off_faces(gmsh, text, side.continued)) > ON_FACE * side.near:
+        reading.faults.append(Fault(f"edges that go on over openings are up to {off:.3g} mm off the faces beside them: "
+                                    "close the openings in the CAD program, or choose faces by --faces"))
+    return Closed(text, numbers, [tag for tag, number in numbers.items() if number in set(faces)], edges, openings,
+                  curves, notes)
+
+
+def summary(words: list[str]) -> str:
+    """Return words, those that are there several times with their number."""
+    return ", ".join(f"{count} x {word}" if count > 1 else word for word, count in Counter(words).items())
+
+
+def off_faces(gmsh: Any, text: str, edges: list[int]) -> float:
+    """Return the largest distance of points of edges of a BREP file from where their faces have them, mm."""
+    read_text(gmsh, text)
+    largest = 0.0
+    for edge in edges:
+        low, high = (bound[0] for bound in gmsh.model.getParametrizationBounds(1, edge))
+        places = np.linspace(low, high, PLACES)
+        points = np.array(gmsh.model.getValue(1, edge, places))
+        for face in gmsh.model.getAdjacencies(1, edge)[0]:
+            uv = gmsh.model.reparametrizeOnSurface(1, edge, places, face)
+            largest = max(largest, np.abs(gmsh.model.getValue(2, face, uv) - points).max())
+    return float(largest)
+
+
+def closed_solid(gmsh: Any, reading: Reading, text: str, whole: Side, both: list[tuple[list[Opening], set[int]]]
+                ) -> Side | None:
+    """Return the faces of the solid of a sheet whose openings were filled on both sides, None if that cannot be:
+    `whole` are its faces, which are changed, `text` is the BREP file of them as they were, and `both` has the openings
+    of each side and the faces at its outer rim."""
+    shape, sheet = reading.shape, reading.sheet
+    if not reading.solid or not all(sheet.sides):
+        return None
+    openings = [opening for one, _ in both for opening in one]
+    rims = set(sheet.rims)
+    walls = [{tag for edge in opening.edges for tag in shape.edges[edge].faces} & rims for opening in openings]
+    fixed = set().union(*(outer for _, outer in both), rims - set().union(*walls))
+    hard = {i for i, opening in enumerate(openings) if opening.notch}
+    for _ in range(2):
+        side = whole
+        side.fixed = fixed
+        if hard:
+            if any(openings[i].formed or openings[i].size > LARGE * shape.size for i in hard):
+                return None
+            solid, vertices = without(gmsh, shape, text, set().union(*(walls[i] for i in hard)))
+            if not solid:
+                return None
+            side = side_of(gmsh, shape, solid, set(shape.tags), fixed, (sheet.sides, vertices))
+            if any(walls[i] & set(side.numbers) for i in hard):
+                return None
+        easy = [i for i in range(len(openings)) if i not in hard]
+        side.remove(set().union(*(walls[i] for i in easy)))
+        left = side.filled([openings[i] for i in easy])
+        if not left:
+            return None if side.loops(set(shape.tags)) else side
+        hard |= {i for i in easy if any(openings[i] is one for one in left)}
+    return None
+
+
+def read_text(gmsh: Any, text: str) -> None:
+    """Read the text of a BREP file into the session, in place of what is there."""
+    gmsh.clear()
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "part.brep"
+        path.write_text(text, encoding="utf-8")
+        gmsh.model.occ.importShapes(str(path), highestDimOnly=False)
+    gmsh.model.occ.synchronize()
+
+
+def written_by(gmsh: Any) -> str:
+    """Return the text of a BREP file of the shapes of the session."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "part.brep"
+        gmsh.write(str(path))
+        return path.read_text(encoding="utf-8")
+
+
+Changed = tuple[tuple[list[int], list[int]], dict[int, np.ndarray]]
+
+
+def side_of(gmsh: Any, shape: Shape, text: str, faces: set[int], fixed: set[int], changed: Changed | None = None
+           ) -> Side:
+    """Return faces of a part in a BREP file, which the session reads. With both sides of the part and the vertices of
+    its faces as it was read, faces that were changed since get numbers by these."""
+    read_text(gmsh, text)
+    topology = Topology.of(text)
+    tags = [tag for _, tag in gmsh.model.getEntities(2)]
+    number = numbers_of(gmsh, tags, shape)
+    for tag in [tag for tag in tags if tag not in number] if changed else []:
+        number[tag] = number_by_vertices(corners(gmsh, tag), *changed, set(number.values()), SAME * shape.size)
+    edges = dict(zip((part.record for part in topology.found("Ed")), (tag for _, tag in gmsh.model.getEntities(1))))
+    chosen = [(part, number[tag]) for part, tag in zip(topology.found("Fa"), tags) if number.get(tag) in faces]
+    return Side(gmsh, topology, [part for part, _ in chosen], [one for _, one in chosen], fixed, edges,
+                SAME * shape.size)
+
+
+def numbers_of(gmsh: Any, tags: list[int], shape: Shape) -> dict[int, int]:
+    """Return the numbers in the part of the faces that are as they were, by area and centre."""
+    old = shape.tags
+    away, at = cKDTree([shape.centres[tag] for tag in old]).query(
+        [gmsh.model.occ.getCenterOfMass(2, tag) for tag in tags], k=min(4, len(old)))
+    found = {}
+    for tag, distances, places in zip(tags, np.reshape(away, (len(tags), -1)), np.reshape(at, (len(tags), -1))):
+        area = gmsh.model.occ.getMass(2, tag)
+        same = [old[k] for k, distance in zip(places, distances)
+                if distance <= SAME * shape.size and abs(shape.areas[old[k]] - area) <= EQUAL * area]
+        if same:
+            found[tag] = same[0]
+    return found
+
+
+def corners(gmsh: Any, tag: int) -> np.ndarray:
+    """Return the vertices of a face (n, 3)."""
+    points = gmsh.model.getBoundary([(2, tag)], combined=False, oriented=False, recursive=True)
+    return np.reshape([gmsh.model.getValue(0, point, []) for _, point in points], (-1, 3))
+
+
+def number_by_vertices(points: np.ndarray, sides: tuple[list[int], list[int]], vertices: dict[int, np.ndarray],
+                       used: set[int], near: float) -> int:
+    """Return the number of a face that was changed: of the faces of that side all of whose known vertices it has, or of
+    those through the thickness, the one with which it has the most vertices in common; 0 without one."""
+    def common(of: list[int]) -> np.ndarray:
+        known = [vertices[tag] for tag in of if len(vertices[tag])]
+        return cKDTree(np.concatenate(known)).query(points)[0] <= near if known else np.zeros(len(points), bool)
+
+    known = common(list(vertices))
+    side = next((one for one in sides if (common(one) == known).all()),
+                [tag for tag in vertices if tag not in {*sides[0], *sides[1]}])
+    return max((tag for tag in side if tag not in used), key=lambda tag: common([tag]).sum(), default=0)
+
+
+def without(gmsh: Any, shape: Shape, text: str, walls: set[int]) -> tuple[str, dict[int, np.ndarray]]:
+    """Return the text of a part without the openings that have walls, an empty one if OpenCASCADE does not take them
+    out; and the vertices of the faces of the part."""
+    read_text(gmsh, text)
+    number = numbers_of(gmsh, [tag for _, tag in gmsh.model.getEntities(2)], shape)
+    vertices = {one: corners(gmsh, tag) for tag, one in number.items()}
+    chosen = [tag for tag, one in number.items() if one in walls]
+    low, high = box_of_edges(gmsh)
+    solids = {int(solid) for tag in chosen for solid in gmsh.model.getAdjacencies(2, tag)[0]}
+    try:
+        with limited(TIME, "the openings are not taken out of the solid"):
+            gmsh.model.occ.defeature(sorted(solids), chosen)
+            gmsh.model.occ.synchronize()
+    except Exception:  # Gmsh raises nothing more specific
+        return "", vertices
+    lower, higher = box_of_edges(gmsh)
+    beyond = max((low - lower).max(), (higher - high).max())
+    return written_by(gmsh) if beyond <= BEYOND * shape.size else "", vertices
+
+
+def box_of_edges(gmsh: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Return the least and the largest coordinates of points of the edges, mm."""
+    points = []
+    for _, edge in gmsh.model.getEntities(1):
+        low, high = (bound[0] for bound in gmsh.model.getParametrizationBounds(1, edge))
+        points.append(np.reshape(gmsh.model.getValue(1, edge, np.linspace(low, high, PLACES)), (-1, 3)))
+    return np.concatenate(points).min(axis=0), np.concatenate(points).max(axis=0)
