@@ -42,7 +42,7 @@ def test_tools(folder, tmp_path, name):
     for tool in ("punch", "die"):
         assert largest_distance(tmp_path / "own", tmp_path / "plain", tool) < 0.01
         assert largest_distance(tmp_path / "plain", tmp_path / "own", tool) < 0.01
-    assert not (tmp_path / "plain" / "trim.dat").exists()
+    assert len(read_curves(tmp_path / "plain" / "trim.txt")) == 1
 
 
 def test_curves(folder, tmp_path):

@@ -14,6 +14,8 @@ from dd3.tools.tool_set import ToolSet
 # Elements of the undivided blank, about; length of the smallest ones over the least radius of the tools, on which one
 # turns by 19 degrees, and over the thickness at least; most levels.
 ELEMENTS, OF_RADIUS, OF_THICKNESS, LEVELS = 1000, 1 / 3, 1.0, 4
+# Elements around a blank that is cut.
+AROUND = 2.0
 # Pressure of the holder, MPa.
 PRESSURE = 2.0
 # Density of steel, of which the weight is told without a material, t/mm3.
@@ -111,6 +113,8 @@ def deck(options: argparse.Namespace, material: str, tools: ToolSet, command: st
     smallest = max(OF_RADIUS * tools.radius, OF_THICKNESS * options.thickness)
     levels = int(np.clip(np.ceil(np.log2((tools.blank.area / ELEMENTS)**0.5 / smallest)), 0, LEVELS))
     length = 2**levels * smallest
+    if tools.blank.cut:  # that does not meet the border of the mesh
+        low, high = low - AROUND * length, high + AROUND * length
     divisions = [2 * int(np.ceil(side / length / 2)) for side in high - low]
     include = f'*INCLUDE "{options.material.resolve()}"' if options.material else STEEL
     pressed = {name: PRESSURE * tools.area[name] for name in ("holder", "pad") if name in tools.surfaces}

@@ -120,9 +120,11 @@ def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
     punch, curves = with_walls(own_flange.trimmed(punch, own_flange.labels_of(punch, roles, shoulder=True)), face,
                                options)
     beside = own_flange.labels_of(die, roles, shoulder=True) - own
-    result.shoulder = min(options.shoulder if len(own) == 0 else np.inf, own_flange.least_radius(die, beside))
+    made_here = options.shoulder if any(not reach.own for reach in face.reaches) else np.inf
+    radius = own_flange.least_radius(die, beside)
+    result.shoulder = min(made_here, radius)
     if beside:
-        result.lines.append(("shoulder", f"of the part, radius {result.shoulder:.3g} mm on the die"))
+        result.lines.append(("shoulder", f"of the part, radius {radius:.3g} mm on the die"))
     result.radius = min(result.shoulder, *(own_flange.least_radius(tool, range(len(tool.names)))
                                            for tool in (punch, face.surface)))
     inset = INSET * options.thickness
