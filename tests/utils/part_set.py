@@ -264,6 +264,19 @@ def slotted_cover():
     occ.cut(body, slots)
 
 
+def flanged_cover():
+    """Make a cover with a flange of its own, a window in its floor and four holes in its flange."""
+    outer, inner = block((-45, -30, 0), (90, 60, 14), 12, 4.8), block((-44.2, -29.2, 0.8), (88.4, 58.4, 20), 11.2, 4)
+    body = occ.cut(occ.fuse([(3, outer)], [(3, occ.addBox(-57, -42, 13.2, 114, 84, 0.8))])[0], [(3, inner)])[0]
+    occ.synchronize()
+    for level, radius in ((14.0, 3.8), (13.2, 3.0)):
+        inside = edges(lambda b, level=level: abs(b[2] - level) < 1e-3 and abs(b[5] - level) < 1e-3
+                       and max(-b[0], b[3]) < 46 and max(-b[1], b[4]) < 31)
+        body = occ.fillet([body[0][1]], inside, [radius])
+    body = holes(body, [(x, y, 13) for x in (-51, 51) for y in (-36, 36)], radius=2.5)
+    occ.cut(body, [(3, occ.addBox(-15, -8, -5, 30, 16, 10))])
+
+
 def louvred_cover():
     """Make a cover with three louvres: cut along a line and formed upwards on one side of it."""
     body = pocket((60, 45), 15, 1, 8, 4)
@@ -450,6 +463,7 @@ PARTS = {
     "s_rim_tray": Expected(s_rim_tray, symmetry=1, radius=5.0),
     "saddle_tray": Expected(saddle_tray, symmetry=2, radius=5.0),
     "slotted_cover": Expected(slotted_cover, thickness=0.8, holes=165, symmetry=2, radius=3.2),
+    "flanged_cover": Expected(flanged_cover, thickness=0.8, holes=5, symmetry=2, radius=3.0),
     "louvred_cover": Expected(louvred_cover, holes=3, symmetry=1, radius=0.0),
     "saddle_panel": Expected(saddle_panel, kind="surface", thickness=None, notches=1, symmetry=1),
     "crowned_block": Expected(crowned_block, kind="block", thickness=None, symmetry=2),

@@ -14,8 +14,8 @@ from dd3.tools.binder import developable, inclined, level, of_points
 from dd3.tools.joints import find_joints, folded, kinks
 from dd3.tools.patch_distance import Distance
 
-NAMES = ["own_flange", "hat", "pan", "island_tray", "sharp_tray", "sharp_hat", "stepped_hat", "arched_rail", "z_section",
-         "s_rim_tray", "saddle_tray"]
+NAMES = ["own_flange", "flanged_cover", "hat", "pan", "island_tray", "sharp_tray", "sharp_hat", "stepped_hat",
+         "arched_rail", "z_section", "s_rim_tray", "saddle_tray"]
 CLEARANCE = 0.1
 
 

@@ -507,8 +507,7 @@ def read_cad(gmsh: Any, path: Path, options: argparse.Namespace, progress: Progr
     model.solid = set(model.tags) <= in_solids
     others = [(2, tag) for _, tag in gmsh.model.getEntities(2) if tag not in model.tags]
     owner = {tag: name for name, faces in model.parts for tag in faces}
-    number = options.closed.numbers if options.closed else {}
-    model.origin = [number.get(file_tag[tag], file_tag[tag]) for tag in model.tags]
+    model.origin = [file_tag[tag] for tag in model.tags]
     model.names = [f"face {old} ({gmsh.model.getType(2, tag)}"
                    + (f", {owner.get(tag, owner.get(old))})" if len(model.parts) > 1 else ")") if old else "fillet of a sharp edge"
                    for tag, old in zip(model.tags, model.origin)]
