@@ -39,6 +39,7 @@ from dd3.tools.offset import at_distance
 from dd3.tools.shapes import read_shapes
 from dd3.tools.surface import Surface, turned, write
 
+RATIO = 2.0  # drawing ratio up to which mild steel is drawn in one stroke (Lange 1985)
 RADIUS = 0.2  # least radius of an offset, over its distance
 DRAW = "draw.dat"  # input file of a set of tools
 # Largest distance of a surface from CAD, and estimated one of facets, mm.
@@ -350,6 +351,11 @@ def make_set(options: argparse.Namespace, command: str) -> dict[str, report.Repo
         write_set(tools, options, material, command)
         reports[str(options.target / DRAW)] = report.Report(
             [f"  {'travel':<10} {tools.travel:.6g} mm", f"  {'blank':<10} {set_deck.said(options, tools.blank)}"])
+        if tools.ratio > RATIO:
+            reports[str(options.target / DRAW)].warnings.append(
+                f"the drawing ratio, the root of the area of the blank over that of the punch, is {tools.ratio:.3g}: mild "
+                f"steel is drawn in one stroke up to about {RATIO:g}. Take a smaller --margin or --shoulder, or draw it "
+                "in two strokes")
         check_deck(reports[str(options.target / DRAW)], options)
         if options.curves:
             reports[str(options.target / trim_deck.DECK)] = report.Report([f"  {'curves':<10} {len(options.curves)}"])

@@ -44,6 +44,7 @@ class ToolSet:
     """Surfaces by the names of the tools, with the highest point of the binder at z = 0, punch and holder at the start
     of their travels; these travels, the height by which the part was moved into the die, the least radius of the die's
     shoulder and that of all faces of punch and die, mm; the blank, and the areas in plan of the tools over it, mm2; the
+    drawing ratio, the root of the area of the blank over that of the punch in plan, 0 of a part with open ends; the
     largest distances of the faces of punch and die from the CAD, mm; lines of the report."""
 
     surfaces: dict[str, Surface] = field(default_factory=dict)
@@ -54,6 +55,7 @@ class ToolSet:
     radius: float = 0.0
     blank: Blank = field(default_factory=lambda: Blank(np.zeros((0, 2)), False))
     area: dict[str, float] = field(default_factory=dict)
+    ratio: float = 0.0
     distance: dict[str, np.ndarray] = field(default_factory=dict)
     lines: list[tuple[str, str]] = field(default_factory=list)
 
@@ -151,6 +153,8 @@ def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
         result.area[name] = result.blank.pressed(surface)
         surface.net = placed(surface.net, np.eye(3), (0.0, 0.0, height))
         result.surfaces[name] = surface
+    if all(reach.rim.closed for reach in face.reaches):
+        result.ratio = (result.blank.area / result.area["punch"])**0.5
     return result
 
 
