@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from dd3.tools import cad, rolling_ball
-from dd3.tools.joints import turn
+from dd3.tools.joints import folded, turn
 from dd3.tools.moved import shift_of
 from dd3.tools.report import named
 from dd3.tools.sharp_edges import Patches
@@ -48,7 +48,11 @@ def at_distance(gmsh: Any, model: cad.Model, sign: np.ndarray, kept: np.ndarray,
     if not ball.changed.any():
         return result, cad.by_face(part, off)
     new = from_nodes(np.concatenate([ball.nodes[ball.changed], ball.rounding]))
-    away = rolling_ball.deviation(new, patches.nodes, cad.PLACES, abs(distance), radius).max(axis=1)
+    if len(folded(new)):  # an error later on
+        away = np.zeros(len(new))
+        result.notes.append("distance not measured where radii were changed, as patches are folded there")
+    else:
+        away = rolling_ball.deviation(new, patches.nodes, cad.PLACES, abs(distance), radius).max(axis=1)
     new = new if ahead > 0 else turned(new)
     changed = int(ball.changed.sum())
     off[ball.changed] = away[:changed]
