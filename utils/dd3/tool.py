@@ -39,7 +39,7 @@ from dd3.tools.offset import at_distance
 from dd3.tools.shapes import read_shapes
 from dd3.tools.surface import Surface, turned, write
 
-RATIO = 2.0  # drawing ratio up to which mild steel is drawn in one stroke (Lange 1985)
+RATIO = 2.0  # drawing ratio up to which mild steel is drawn in one stroke, about
 RADIUS = 0.2  # least radius of an offset, over its distance
 DRAW = "draw.dat"  # input file of a set of tools
 # Largest distance of a surface from CAD, and estimated one of facets, mm.
@@ -364,8 +364,9 @@ def make_set(options: argparse.Namespace, command: str) -> dict[str, report.Repo
 
 def check_deck(result: report.Report, options: argparse.Namespace) -> None:
     """Add what the program says of the input file of a set to its report: memory, elements, time, warnings and errors."""
-    program = shutil.which(options.program or "build/release/dd3imp") or shutil.which("dd3imp")
-    if options.program and not shutil.which(options.program):
+    tried = (options.program,) if options.program else ("build/release/dd3imp", "dd3imp")
+    program = next((found for found in map(shutil.which, tried) if found), None)
+    if not program and options.program:
         result.errors.append(f"{options.program}: no such program")
     elif not program:
         result.add("check", "not made, as there is no program dd3imp; --program names it")

@@ -88,7 +88,19 @@ def with_face(gmsh: Any, die: Trimmed, options: argparse.Namespace) -> Face:
         at_borders(found, die, borders, options)
     if walls:
         nets += at_walls(found, walls, options)
-    covered = np.concatenate([*nets, *(part.net for part in die.flanges)])
+    set_blank(found, np.concatenate([*nets, *(part.net for part in die.flanges)]), options)
+    face = from_nodes(flange(gmsh, found, [reach.curve for reach in found.reaches], options.tolerance / 2))
+    shoulders = sum(map(len, nets[1:]))
+    count = len(surface.names)
+    label = np.concatenate([surface.face, np.repeat([count, count + 1], [shoulders, len(face)])])
+    found.surface = consistent(Surface(np.concatenate([*nets, face]), label, [*surface.names, "shoulder", "flange"]))
+    if walls:
+        check_kinks(found.surface, count)
+    return found
+
+
+def set_blank(found: Face, covered: np.ndarray, options: argparse.Namespace) -> None:
+    """Set the blank that covers patches, and how far the die reaches, where `--flange` does not tell."""
     try:
         found.blank = blank_of(options.source, Surface(covered, np.zeros(len(covered), int), [""]), options.margin)
     except Problem as problem:
@@ -99,16 +111,9 @@ def with_face(gmsh: Any, die: Trimmed, options: argparse.Namespace) -> Face:
     if options.flange is None:
         inset = INSET * options.thickness
         found.outline = found.blank.box + np.array([[-inset], [inset]])
-        for reach in (reach for reach in found.reaches if not reach.rim.closed):
-            reach.width = width_of(reach, found.blank.border, inset)
-    face = from_nodes(flange(gmsh, found, [reach.curve for reach in found.reaches], options.tolerance / 2))
-    shoulders = sum(map(len, nets[1:]))
-    count = len(surface.names)
-    label = np.concatenate([surface.face, np.repeat([count, count + 1], [shoulders, len(face)])])
-    found.surface = consistent(Surface(np.concatenate([*nets, face]), label, [*surface.names, "shoulder", "flange"]))
-    if walls:
-        check_kinks(found.surface, count)
-    return found
+        for reach in found.reaches:
+            if not reach.rim.closed:
+                reach.width = width_of(reach, found.blank.border, inset)
 
 
 def refuse_mixed(walls: list[Rim], borders: list[Rim]) -> None:
