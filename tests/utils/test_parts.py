@@ -149,7 +149,10 @@ def test_tools(folder, tmp_path):
     assert said.count("folds      0") == 3 and "thickness = 0.9144" in (tmp_path / "inch" / "draw.dat").read_text()
     said = call("tool", folder / "tray.step", tmp_path / "tray", "--toward", 0, 0, 1, "--shoulder", 4, "--flange", 15)
     assert "turned" not in said and "drawing ratio" not in said, said
-    assert "the drawing ratio" in call("tool", folder / "cup_with_holes.step", tmp_path / "cup")
+    said = call("tool", folder / "cup_with_holes.step", tmp_path / "cup")
+    assert "shoulder of 4 mm and margin of 2 mm, as the drawing ratio is 2.1" in said and "warning" in said, said
+    said = call("tool", folder / "cup_with_holes.step", tmp_path / "cup", "--margin", 5)
+    assert "shoulder of 4 mm and margin of 5 mm" in said, said
     for name, reason in (("lipped_channel", "not in one stroke from any direction"),
                          ("plate", "nothing is to be formed"), ("s_rail", "give the thickness"),
                          ("two_angles", "2 parts"),

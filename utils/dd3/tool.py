@@ -17,7 +17,7 @@ import shlex
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -208,13 +208,13 @@ def command_line() -> argparse.ArgumentParser:
     whole = parser.add_argument_group("punch, die and holder of a part of CAD, and an input file that draws it")
     whole.add_argument("--thickness", type=float, metavar="mm", help="of the sheet (that of the part)")
     whole.add_argument("--clearance", type=float, metavar="mm",
-                       help=f"of punch and die beyond the thickness ({tool_set.CLEARANCE:g} thicknesses)")
+                       help=f"of punch and die beyond the thickness ({tool_set.SIZES['clearance']:g} thicknesses)")
     whole.add_argument("--shoulder", type=float, metavar="mm",
-                       help=f"radius of the die's shoulder ({tool_set.SHOULDER:g} thicknesses)")
+                       help=f"radius of the die's shoulder ({tool_set.SIZES['shoulder']:g} thicknesses)")
     whole.add_argument("--flange", type=float, metavar="mm",
                        help="width of the die beyond the shoulder (as the blank needs)")
     whole.add_argument("--margin", type=float, metavar="mm",
-                       help=f"of the blank beyond the part, or the shoulder ({tool_set.MARGIN:g} thicknesses)")
+                       help=f"of the blank beyond the part, or the shoulder ({tool_set.SIZES['margin']:g} thicknesses)")
     whole.add_argument("--program", type=Path, metavar="FILE",
                        help="the program, which checks the input file (build/release/dd3imp, else dd3imp)")
     whole.add_argument("--side", choices=("punch", "die"), help="the tool that touches the faces (punch)")
@@ -274,16 +274,31 @@ def check_set(parser: argparse.ArgumentParser, options: argparse.Namespace) -> N
         parser.error("--clearance takes a number that is not negative")
 
 
-def settle_set(options: argparse.Namespace) -> None:
-    """Set the sizes of a set of tools that were not given."""
+def tools_of(gmsh: Any, options: argparse.Namespace, progress: Progress) -> tool_set.ToolSet:
+    """Return the tools of a part; where their drawing ratio is too large, those with a smaller shoulder and margin, as
+    far as these were not given."""
+    settled = settle_set(options, tool_set.SIZES)
+    tools = tool_set.made(gmsh, settled, progress)
+    smaller = settle_set(options, tool_set.SIZES | tool_set.SMALLER)
+    if tools.ratio <= RATIO or vars(smaller) == vars(settled):
+        return tools
+    first, tools = tools.ratio, tool_set.made(gmsh, smaller, progress)
+    tools.lines.append(("ratio", f"shoulder of {smaller.shoulder:.3g} mm and margin of {smaller.margin:.3g} mm, as the "
+                        f"drawing ratio is {first:.3g} with {settled.shoulder:.3g} and {settled.margin:.3g} mm"))
+    return tools
+
+
+def settle_set(options: argparse.Namespace, sizes: Mapping[str, float]) -> argparse.Namespace:
+    """Return the options with the sizes of a set of tools that were not given, from those over the thickness."""
+    options = argparse.Namespace(**vars(options))
     options.radius = options.radius or options.thickness
-    for name, factor in (("clearance", tool_set.CLEARANCE), ("shoulder", tool_set.SHOULDER),
-                         ("margin", tool_set.MARGIN)):
+    for name, factor in sizes.items():
         if getattr(options, name) is None:
             setattr(options, name, factor * options.thickness)
     # The convex ones of a side are the larger by the gap, so that the tool on the other side has the radius there.
     gap = options.thickness + options.clearance
     options.sharp = {edge: options.radius + (gap if angle > 0 else 0.0) for edge, angle in options.angles.items()}
+    return options
 
 
 def made(options: argparse.Namespace) -> tuple[Surface, Joints, report.Report]:
@@ -341,10 +356,9 @@ def make_set(options: argparse.Namespace, command: str) -> dict[str, report.Repo
         write_reading(reading, options.target)
     if reading.faults:
         sys.exit(2)
-    settle_set(options)
     progress = Progress(options.source.name)
     with session() as gmsh:
-        tools = tool_set.made(gmsh, options, progress)
+        tools = tools_of(gmsh, options, progress)
     progress.end()
     reports = judge_set(tools, options)
     if options.target and not any(result.errors for result in reports.values()):

@@ -102,7 +102,8 @@ def with_face(gmsh: Any, die: Trimmed, options: argparse.Namespace) -> Face:
 def set_blank(found: Face, covered: np.ndarray, options: argparse.Namespace) -> None:
     """Set the blank that covers patches, and how far the die reaches, where `--flange` does not tell."""
     try:
-        found.blank = blank_of(options.source, Surface(covered, np.zeros(len(covered), int), [""]), options.margin)
+        found.blank = blank_of(options.source, Surface(covered, np.zeros(len(covered), int), [""]), options.thickness,
+                               options.margin)
     except Problem as problem:
         found.lines.append(("blank", f"not estimated, as {problem.args[0].split(': ', 1)[-1]}: {WIDE:g} thicknesses wide"))
         around = np.concatenate([reach.curve[:, :2] for reach in found.reaches])

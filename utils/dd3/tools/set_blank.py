@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 from dd3.errors import Problem
 from dd3.tools.plane import crosses, inside
 from dd3.tools.surface import Surface, areas_at, grid, points_at
-from dd3.unfold import Balance, Sheet, Triangles, prepared, rims, unfolded
+from dd3.unfold import Balance, Sheet, Triangles, area_vectors, prepared, rims, unfolded
 
 # Patches above which each becomes four triangles in place of eight.
 MANY = 1000
@@ -61,9 +61,9 @@ class Blank:
         return float((area * over).sum() / SAMPLES**2)
 
 
-def blank_of(path: Path, covered: Surface, margin: float) -> Blank:
-    """Return the blank that covers a surface, of one piece and seen from above, and is wider by a margin, mm."""
-    mesh = prepared(path, triangles_of(covered), [])
+def blank_of(path: Path, covered: Surface, thickness: float, margin: float) -> Blank:
+    """Return the blank that lies on a surface, of one piece and seen from above, and is wider by a margin, mm."""
+    mesh = raised(prepared(path, triangles_of(covered), []), thickness / 2)
     balance = Balance(mesh, Sheet(EXPONENT))
     places = unfolded(path, balance)
     border = max((places[rim] for rim in rims(path, mesh.triangles)), key=lambda points: abs(area_of(points)))
@@ -82,6 +82,14 @@ def triangles_of(surface: Surface) -> Triangles:
     of_patch = np.stack([np.zeros_like(rim), rim, np.roll(rim, -1)], axis=1)
     first = len(u) * np.arange(len(nodes))[:, None, None]
     return Triangles(nodes.reshape(-1, 3), (first + of_patch).reshape(-1, 3))
+
+
+def raised(mesh: Triangles, height: float) -> Triangles:
+    """Return triangles at a height above others, along the mean normals at their nodes."""
+    normal = np.zeros_like(mesh.nodes)
+    for corner in mesh.triangles.T:
+        np.add.at(normal, corner, area_vectors(mesh.nodes, mesh.triangles))
+    return Triangles(mesh.nodes + height * normal / np.linalg.norm(normal, axis=1, keepdims=True), mesh.triangles)
 
 
 def area_of(points: np.ndarray) -> float:

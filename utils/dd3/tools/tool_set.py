@@ -24,8 +24,10 @@ from dd3.tools.rims import Rim, border_rims, find_rims, lengths, patches, wall
 from dd3.tools.set_blank import Blank
 from dd3.tools.surface import Surface, from_nodes, turned
 
-# Defaults over the thickness: clearance, radius of the shoulder, margin of the blank.
-CLEARANCE, SHOULDER, MARGIN = 0.1, 6.0, 5.0
+# Defaults over the thickness: clearance, radius of the shoulder, margin of the blank; smaller ones for a drawing ratio
+# that is too large with these.
+SIZES = {"clearance": 0.1, "shoulder": 6.0, "margin": 5.0}
+SMALLER = {"shoulder": 4.0, "margin": 2.0}
 # Part of the projected area that is seen from the punch which may be left out.
 LEFT_OUT = 0.05
 # Part of the length of the rims by which their directions outwards do not cancel, above which there is a pad.
