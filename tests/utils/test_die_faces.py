@@ -56,6 +56,10 @@ def test_faces(folder, tmp_path, name):
     toward = (0, 0, -1) if PARTS[name].toward == (0, 0, -1) else (0, 0, 1)
     target = tmp_path / "tools"
     said = call("tool", folder / f"{name}.step", target, "--toward", *toward)
+    assert "not estimated" not in said
+    # While the holder closes the middle of the blank is held, and no longer.
+    deck = (target / "draw.dat").read_text(encoding="utf-8")
+    assert ("*PHASE close" in deck) == ("displace = middle x 0" in deck) == ("free = middle x y" in deck)
     travel = float(said.split("travel")[1].split()[0])
     reading, low, upper, role, lower = sampled(folder / f"{name}.step", toward)
     thickness = reading.sheet.thickness

@@ -282,10 +282,12 @@ def tools_of(gmsh: Any, options: argparse.Namespace, progress: Progress) -> tool
     smaller = settle_set(options, tool_set.SIZES | tool_set.SMALLER)
     if tools.ratio <= RATIO or vars(smaller) == vars(settled):
         return tools
-    first, tools = tools.ratio, tool_set.made(gmsh, smaller, progress)
-    tools.lines.append(("ratio", f"shoulder of {smaller.shoulder:.3g} mm and margin of {smaller.margin:.3g} mm, as the "
-                        f"drawing ratio is {first:.3g} with {settled.shoulder:.3g} and {settled.margin:.3g} mm"))
-    return tools
+    again = tool_set.made(gmsh, smaller, progress)
+    if again.ratio >= tools.ratio:
+        return tools
+    again.lines.append(("ratio", f"shoulder of {smaller.shoulder:.3g} mm and margin of {smaller.margin:.3g} mm, as the "
+                        f"drawing ratio is {tools.ratio:.3g} with {settled.shoulder:.3g} and {settled.margin:.3g} mm"))
+    return again
 
 
 def settle_set(options: argparse.Namespace, sizes: Mapping[str, float]) -> argparse.Namespace:

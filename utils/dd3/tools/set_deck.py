@@ -62,7 +62,7 @@ DECK = """# Draws {part} and releases it; tools by {command}
   trial = 1.0
   hold = die
   hold = punch
-{presses}
+{presses}{free}
 *PHASE draw
   control = punch
   trial = 1.0
@@ -86,11 +86,8 @@ SUPPORT = """# The middle of the blank does not move sideways while the holder c
 *SET middle
   near = {middle} 0
 
-*BOUNDARY middle
-  set = middle
-  fix = x y
-
 """
+FREE = "  free = middle x y\n"
 BLANK = "blank.txt"  # outline of the blank
 CUT = """
 *TRIM blank
@@ -103,6 +100,8 @@ CLOSING = """# The holder bends the blank onto the die.
   hold = die
   hold = punch
   move = holder 0 0 -{closing:.6g}
+  displace = middle x 0
+  displace = middle y 0
 
 """
 
@@ -131,7 +130,7 @@ def deck(options: argparse.Namespace, material: str, tools: ToolSet, command: st
                        material=include, name=material, origin=pair(low), size=pair(high - low),
                        tools="".join(TOOL.format(name=name, contact=CONTACT[name]) for name in tools.surfaces),
                        support=SUPPORT.format(middle=pair((low + high) / 2)) if tools.closing else "",
-                       closing=closing, presses="".join(presses))
+                       closing=closing, presses="".join(presses), free=FREE if tools.closing else "")
 
 
 def write_blank(folder: Path, blank: Blank, part: str) -> None:
