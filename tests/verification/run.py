@@ -49,8 +49,8 @@ No section compares with an experiment. Comparisons with measured values are in 
 ring](reports/split_ring.md), for springback, the [cup of AA6016](reports/round_cup_aa6016.md) and the [square
 cup](reports/square_cup.md#the-aluminium-sheet).
 
-The times in the studies of refinement are those of one thread of a busy machine: compare within a table. There are three
-unknowns for each node. The order is that of the error between a mesh and the coarser one above it.
+The times in the studies of refinement are those of one thread of a busy machine: compare within a table. There are
+three unknowns for each node. The order is that of the error between a mesh and the coarser one above it.
 """
 BESIDE = f"""Unknowns and seconds of the coarsest mesh of each element within {100 * ACCURATE:g} %, from the refinements
 below; none if no mesh is within this error. No element is the best in all cases: `solid_shell` is best in the bending

@@ -87,7 +87,7 @@ displacements. Deck `tests/verification/cook/case.dat`.
 """, values),
     Section("V14 Cook's membrane: refinement and elements", """
 Displacement in the middle of the right edge against the extrapolated one. The stress is singular at the upper left
-corner, which limits the order. The shear strain of `hex8` is bilinear in the plane: it is too stiff in in-plane bending;
+corner, which limits the order. The shear strain of `hex8` is bilinear in the plane: in-plane bending is too stiff;
 `solid_shell` has [less parasitic shear](solid_shell.md#bending-in-the-plane).
 """, study, slow=True, picture="cook_elements.png"),
     Section("V14 Cook's membrane, elastoplastic: refinement and elements", """
