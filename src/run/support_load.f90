@@ -11,6 +11,7 @@ module dd3_run_support_load
   use dd3_model_model, only : model_t
   use dd3_model_reactions, only : reactions
   use dd3_model_state, only : state_t
+  use dd3_model_terms_gravity, only : gravity_name
   use dd3_output_closing, only : support_t
   implicit none
   private
@@ -136,7 +137,8 @@ contains
     holds_free_sheet = .true.
   end function holds_free_sheet
 
-  !> Add a warning if a support carries a notable part of the largest force on a tool.
+  !> Add a warning if a support carries a notable part of the largest force on a tool, and more than
+  !> the weight of the sheet, which is what supports are for.
   subroutine add_support_note(model, state, support, notes)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -144,12 +146,30 @@ contains
     type(message_list_t), intent(inout) :: notes
 
     if (.not. allocated(support%name)) return
-    if (support%reaction <= notable*support%tool_force) return
+    if (support%reaction <= max(notable*support%tool_force, weight(model, state%phase))) return
     call notes%add_new("W121", "at the end of phase '"//model%phase(state%phase)%name// &
         "' the support '"//support%name//"', which only holds the sheet in its place, carries "// &
         to_text(support%reaction, 3)//" N along "//axis_name(support%axis)//", "// &
         to_text(100.0_wp*support%reaction/support%tool_force, 3)//" % of the force on tool '"// &
         model%tool(support%tool)%name//"'")
   end subroutine add_support_note
+
+  !> Return the weight of the sheet at the end of a phase, N.
+  pure real(wp) function weight(model, phase)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: phase
+
+    integer :: i, s
+
+    weight = 0.0_wp
+    do s = 1, size(model%load_set)
+      if (model%load_set(s)%name /= gravity_name) cycle
+      do i = 1, phase
+        associate (loads => model%phase(i)%loads)
+          if (.not. loads%keeps(s)) weight = norm2(loads%final(:, s))
+        end associate
+      end do
+    end do
+  end function weight
 
 end module dd3_run_support_load
