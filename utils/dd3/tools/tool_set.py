@@ -14,8 +14,9 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from dd3.errors import Problem
-from dd3.tools import cad, own_flange, report, sides
-from dd3.tools.die_face import INSET, Face, Reach, TooLong, consistent, even, flange, with_face
+from dd3.tools import cad, no_holder, own_flange, report, sides
+from dd3.tools.binder import NoBinder
+from dd3.tools.die_face import INSET, Face, Reach, TooLong, consistent, estimated, even, flange, with_face
 from dd3.tools.faces import spans
 from dd3.tools.joints import box_of, find_joints
 from dd3.tools.moved import placed, rotation
@@ -117,6 +118,10 @@ def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
             break
         except TooLong as error:
             options.longest = error.length
+        except NoBinder as missing:
+            if options.advice or not no_holder.is_shallow(die):
+                raise
+            return without_holder(punch, die, distance, missing.reason, options)
     else:
         raise Problem(f"{options.source}: the binder at the rim of the part is curved too strongly")
     notes = punch.notes + die.notes
@@ -157,6 +162,31 @@ def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
         result.surfaces[name] = surface
     if all(reach.rim.closed for reach in face.reaches):
         result.ratio = (result.blank.area / result.area["punch"])**0.5
+    return result
+
+
+def without_holder(punch: Surface, die: Surface, distance: dict[str, np.ndarray], reason: str,
+                   options: argparse.Namespace) -> ToolSet:
+    """Return the tools of a part that gets no binder, both sides of it with strips as wide as the blank needs."""
+    result = ToolSet(distance=distance, lines=[("", note) for note in punch.notes + die.notes])
+    result.blank = estimated(die.net, [no_holder.outer_rim(die)[0]], result.lines, options)
+    width = options.flange or no_holder.width_for(die, result.blank.border, INSET * options.thickness)
+    punch, die = (no_holder.continued(tool, width) for tool in (punch, die))
+    result.lines.append(("holder", f"none, as {reason}: formed between punch and die, which go on by "
+                         f"{width:.3g} mm along the tangents at the rim"))
+    low, high = box_of(die.net)
+    inset = INSET * options.thickness
+    result.blank = result.blank.within(np.array([low[:2] + inset, high[:2] - inset]))
+    result.radius = min(own_flange.least_radius(tool, range(len(tool.names))) for tool in (punch, die))
+    result.shoulder = np.inf
+    result.height = -float(report.extent(die.net)[1][2])
+    result.travel = options.thickness - result.height - float(report.extent(punch.net)[0][2])
+    punch.net = turned(punch.net)
+    for name, surface, height in (("punch", punch, result.travel), ("die", die, 0.0)):
+        result.area[name] = result.blank.pressed(surface)
+        surface.net = placed(surface.net, np.eye(3), (0.0, 0.0, result.height + height))
+        result.surfaces[name] = surface
+    result.ratio = (result.blank.area / result.area["punch"])**0.5
     return result
 
 
