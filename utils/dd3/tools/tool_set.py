@@ -31,6 +31,8 @@ SIZES = {"clearance": 0.1, "shoulder": 6.0, "margin": 5.0}
 SMALLER = {"shoulder": 4.0, "margin": 2.0}
 # Part of the projected area that is seen from the punch which may be left out.
 LEFT_OUT = 0.05
+# Part of it below which a face is a wall, which is seen along itself.
+WALL = 1e-3
 # Part of the length of the rims by which their directions outwards do not cancel, above which there is a pad.
 ONE_SIDED = 0.3
 # Times a part is meshed at most.
@@ -99,12 +101,14 @@ def refuse_left_out(model: cad.Model, options: argparse.Namespace) -> None:
     """Refuse a choice of faces, not made by the user, that leaves out a part of what is seen from the punch."""
     if options.faces or options.taken:
         return
-    left = {tag: area for tag, area in options.visible.items() if tag not in model.origin}
-    part = sum(left.values()) / max(sum(options.visible.values()), 1e-300)
+    total = max(sum(options.visible.values()), 1e-300)
+    left = {tag: area for tag, area in options.visible.items() if tag not in model.origin and area > WALL * total}
+    part = sum(left.values()) / total
     if part > LEFT_OUT:
-        raise Problem(f"{100 * part:.3g} % of what is seen of the tool are left out, faces {spans(list(left))}, as "
-                      f"they do not join the others smoothly: --faces {spans(list(options.visible))} takes them too, "
-                      "or choose those that one tool touches")
+        raise Problem(f"{100 * part:.3g} % of what is seen of the block are left out, faces {spans(list(left))}, as they "
+                      f"do not join the others smoothly. If the block is a tool: dd3 tool {options.source} tool.bez --toward "
+                      f"{options.seen} makes it of all faces. If it has the shape of a part: --faces "
+                      f"{spans(sorted({*model.origin, *left}))} takes them too, or choose those that one tool touches")
 
 
 def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
