@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tools of a part that gets no binder: strips along the tangents at its rim against closed forms, the set of a panel on a
-saddle, refusals."""
+"""Tools of a part that gets no binder: strips along the tangents at its rim against closed forms, the set of a panel on
+a saddle, refusals."""
 
 import subprocess
 

@@ -75,8 +75,8 @@ def settle(reading: Reading, options: argparse.Namespace, up: np.ndarray, given:
 
 def take_side(reading: Reading, options: argparse.Namespace) -> None:
     """Set what is known of the faces of a part: `taken`, those of one side of a sheet, `angles` of the sharp edges
-    between these, and `roles` by face; the projected areas of the faces that are seen from the punch, or of a block from
-    the side of the sheet, `visible`, and that direction in words, `seen`."""
+    between these, and `roles` by face; the projected areas of the faces that are seen from the punch, or of a block
+    from the side of the sheet, `visible`, and that direction in words, `seen`."""
     sides, direction, shape = reading.sheet.sides, reading.direction, reading.shape
     assert direction
     one = reading.best if reading.sheet.kind == "block" else direction
@@ -84,7 +84,8 @@ def take_side(reading: Reading, options: argparse.Namespace) -> None:
         level = np.abs(shape.normal @ one.vector) * shape.area
         options.visible = {tag: float(level[shape.cells[tag]].sum()) for tag in one.upper}
         own = shape.of(one.upper)
-        options.seen = replace(one, vector=np.sign(shape.area[own] @ shape.normal[own] @ one.vector) * one.vector).components
+        side = np.sign(shape.area[own] @ shape.normal[own] @ one.vector)
+        options.seen = replace(one, vector=side * one.vector).components
     lower = sides[1] if direction.upper == sorted(sides[0]) else sides[0]
     if not options.advice:  # a part that is open to another side has no flange on this one
         options.roles = {tag: role.name for tag, role in reading.roles.items()}

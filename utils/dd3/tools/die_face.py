@@ -101,7 +101,7 @@ def with_face(gmsh: Any, die: Trimmed, options: argparse.Namespace) -> Face:
 
 def estimated(covered: np.ndarray, curves: list[np.ndarray], lines: list[tuple[str, str]], options: argparse.Namespace
               ) -> Blank:
-    """Return the blank that covers patches; where that is not estimated a box around curves. Enter what is to be said."""
+    """Return the blank that covers patches; where it is not estimated a box around curves. Enter what is to be said."""
     try:
         return blank_of(options.source, Surface(covered, np.zeros(len(covered), int), [""]), options.thickness,
                         options.margin)

@@ -48,8 +48,8 @@ def cause(gmsh: Any, edges: dict[int, float]) -> str:
     short = [edge for edge, radius in edges.items() if length[edge] < radius]
     if not short:
         return ": take a smaller --radius, or round them in the CAD program"
-    return (f", as some are shorter than the radius, {spans(short)}, the shortest of {min(length.values()):.3g} mm, where "
-            "fillets of other edges end: round them in the CAD program, before those")
+    return (f", as some are shorter than the radius, {spans(short)}, the shortest of {min(length.values()):.3g} mm, "
+            "where fillets of other edges end: round them in the CAD program, before those")
 
 
 def interior(gmsh: Any, tag: int) -> tuple[np.ndarray, np.ndarray]:

@@ -19,14 +19,14 @@ SHALLOW = 30.0
 
 
 def outer_rim(surface: Surface) -> tuple[np.ndarray, np.ndarray]:
-    """Return the nodes of the longest closed line of free edges of a surface with normals upwards, (2 n + 1, 3), mm, and
-    there the directions in which the surface goes on across its edges: to points at the distance 1 from both edges at a
-    node."""
+    """Return the nodes of the longest closed line of free edges of a surface with normals upwards, (2 n + 1, 3), mm,
+    none without a closed line, and there the directions in which the surface goes on across its edges: to points at
+    the distance 1 from both edges at a node."""
     joints = find_joints(surface.net)
     points, normals = along_edges(surface, joints.free)
     lines = [chain for chain, closed in chained(points, 1e-6 * joints.size) if closed]
     if not lines:
-        raise Problem("the free edges of the part are no closed line")
+        return np.zeros((0, 3)), np.zeros((0, 3))
     chain = max(lines, key=lambda line: float(np.linalg.norm(np.diff(points[line], axis=1), axis=2).sum()))
     a, b, c = points[chain].transpose(1, 0, 2)
     start = unit(np.cross(4 * b - 3 * a - c, normals[chain, 0]))
@@ -45,7 +45,7 @@ def closed_line(ends: np.ndarray, middles: np.ndarray) -> np.ndarray:
 def is_shallow(surface: Surface) -> bool:
     """Tell whether the tangents across the rim of a surface are level enough for strips that carry a blank."""
     slope = unit(outer_rim(surface)[1])[:, 2]
-    return bool(np.abs(slope).max() < np.sin(np.radians(SHALLOW)))
+    return bool(len(slope) and np.abs(slope).max() < np.sin(np.radians(SHALLOW)))
 
 
 def width_for(surface: Surface, border: np.ndarray, inset: float) -> float:

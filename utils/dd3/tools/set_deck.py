@@ -12,8 +12,8 @@ from dd3.tools.set_blank import Blank
 from dd3.tools.tool_set import ToolSet
 
 # Elements of the undivided blank, about; length of the smallest ones over the least radius of the tools, on which one
-# turns by 19 degrees, and over the thickness at least; height of an arc of that radius over its chord in an element, over
-# the thickness, at most (the program warns of more by W109); most levels.
+# turns by 19 degrees, and over the thickness at least; height of an arc of that radius over its chord in an element,
+# over the thickness, at most (the program warns of more by W109); most levels.
 ELEMENTS, OF_RADIUS, OF_THICKNESS, SAG, LEVELS = 1000, 1 / 3, 1.0, 0.1, 4
 # Elements around a blank that is cut.
 AROUND = 2.0

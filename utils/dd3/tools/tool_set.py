@@ -49,7 +49,7 @@ class ToolSet:
     """Surfaces by the names of the tools, with the highest point of the binder at z = 0, punch and holder at the start
     of their travels; these travels, the height by which the part was moved into the die, the least radius of the die's
     shoulder and that of all faces of punch and die, mm; the blank, and the areas in plan of the tools over it, mm2; the
-    drawing ratio, the root of the area of the blank over that of the punch in plan, 0 of a part with open ends; the
+    drawing ratio, the root of the area of the blank over that of the punch in plan, 0 with open ends or no holder; the
     largest distances of the faces of punch and die from the CAD, mm; lines of the report."""
 
     surfaces: dict[str, Surface] = field(default_factory=dict)
@@ -105,10 +105,11 @@ def refuse_left_out(model: cad.Model, options: argparse.Namespace) -> None:
     left = {tag: area for tag, area in options.visible.items() if tag not in model.origin and area > WALL * total}
     part = sum(left.values()) / total
     if part > LEFT_OUT:
-        raise Problem(f"{100 * part:.3g} % of what is seen of the block are left out, faces {spans(list(left))}, as they "
-                      f"do not join the others smoothly. If the block is a tool: dd3 tool {options.source} tool.bez --toward "
-                      f"{options.seen} makes it of all faces. If it has the shape of a part: --faces "
-                      f"{spans(sorted({*model.origin, *left}))} takes them too, or choose those that one tool touches")
+        both = spans(sorted({*model.origin, *left} - {0}))
+        raise Problem(f"{100 * part:.3g} % of what is seen of the block are left out, faces {spans(list(left))}, as "
+                      "they do not join the others smoothly. If the block is a tool: "
+                      f"dd3 tool {options.source} tool.bez --toward {options.seen} makes it of all faces. If it has the "
+                      f"shape of a part: --faces {both} takes them too, or choose those that one tool touches")
 
 
 def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
@@ -190,7 +191,6 @@ def without_holder(punch: Surface, die: Surface, distance: dict[str, np.ndarray]
         result.area[name] = result.blank.pressed(surface)
         surface.net = placed(surface.net, np.eye(3), (0.0, 0.0, result.height + height))
         result.surfaces[name] = surface
-    result.ratio = (result.blank.area / result.area["punch"])**0.5
     return result
 
 
