@@ -255,6 +255,7 @@ def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
     options.side = options.side or "punch"
     options.closed = options.taken = None
     options.curves, options.roles, options.angles, options.sharp, options.visible = [], {}, {}, {}, {}
+    options.seen = ""
     if options.whole:
         check_set(parser, options)
     options.tolerance = options.tolerance or TOLERANCE[options.kind]

@@ -379,7 +379,8 @@ def solved(balance: Balance, places: np.ndarray) -> np.ndarray | None:
         if abs(residual).max() <= SOLVED * max(abs(balance.forces(corners)).max(), LEAST * balance.length):
             return places
         matrix = bmat([[balance.tangent(corners), csc_array(frame)], [csc_array(frame.T), None]], format="csc")
-        step = splu(matrix).solve(np.concatenate((-residual, np.zeros(3))))[:2 * count].reshape(-1, 2)
+        factors = splu(matrix, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+        step = factors.solve(np.concatenate((-residual, np.zeros(3))))[:2 * count].reshape(-1, 2)
         share, before = 1.0, np.linalg.norm(residual)
         while share >= SHORTEST:
             trial = places + share * step

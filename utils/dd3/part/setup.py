@@ -3,6 +3,7 @@
 no tools."""
 import argparse
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from dd3.part.reading import Fault, Reading, Request, read_part, read_upper
 from dd3.part.shape import angle_between, unit
 from dd3.part.table import kind_of
 from dd3.progress import Progress
+from dd3.tools.faces import numbers_of, side_of_sheet
 from dd3.tools.moved import rotation
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -41,6 +43,8 @@ def read_for_tools(options: argparse.Namespace) -> Reading:
                                           options.sew, options.tolerance), progress)
         progress.end()
         settle(reading, options, up, given)
+        if reading.sheet.kind == "block" and not reading.faults:
+            options.angles = angles_of_block(gmsh, reading, options)
         faces = options.taken or (reading.sheet.kind == "surface" and not options.faces and reading.shape.tags)
         if faces and not reading.faults:
             options.closed = closed_part(gmsh, reading, faces)
@@ -71,16 +75,22 @@ def settle(reading: Reading, options: argparse.Namespace, up: np.ndarray, given:
 
 def take_side(reading: Reading, options: argparse.Namespace) -> None:
     """Set what is known of the faces of a part: `taken`, those of one side of a sheet, `angles` of the sharp edges
-    between these, and `roles` by face; the projected areas of the faces that are seen from the punch, `visible`."""
+    between these, and `roles` by face; the projected areas of the faces that are seen from the punch, or of a block
+    from the side of the sheet, `visible`, and that direction in words, `seen`."""
     sides, direction, shape = reading.sheet.sides, reading.direction, reading.shape
     assert direction
     one = reading.best if reading.sheet.kind == "block" else direction
     if one and abs(one.vector @ direction.vector) > PARALLEL:
         level = np.abs(shape.normal @ one.vector) * shape.area
         options.visible = {tag: float(level[shape.cells[tag]].sum()) for tag in one.upper}
+        own = shape.of(one.upper)
+        side = np.sign(shape.area[own] @ shape.normal[own] @ one.vector)
+        options.seen = replace(one, vector=side * one.vector).components
     lower = sides[1] if direction.upper == sorted(sides[0]) else sides[0]
     if not options.advice:  # a part that is open to another side has no flange on this one
         options.roles = {tag: role.name for tag, role in reading.roles.items()}
+    if reading.sheet.kind == "block" and options.faces:
+        options.roles = roles_of_block(reading, options)
     if reading.sheet.kind != "sheet":
         return
     loops = find_loops(shape, lower)
@@ -91,6 +101,24 @@ def take_side(reading: Reading, options: argparse.Namespace) -> None:
         options.taken = direction.upper if options.side == "punch" else lower
         options.angles = {number: edge.angle for number, edge in shape.edges_inside(options.taken).items()
                           if edge.angle}
+
+
+def roles_of_block(reading: Reading, options: argparse.Namespace) -> dict[int, str]:
+    """Return what those faces of a block that the user has chosen are for."""
+    shape, own = reading.shape, [tag for tag in numbers_of(options.faces) if tag in reading.shape.tags]
+    loops = find_loops(shape, own)
+    return {tag: role.name for tag, role in read_roles(shape, replace(reading.direction, upper=own), loops[0]).items()}
+
+
+def angles_of_block(gmsh: Any, reading: Reading, options: argparse.Namespace) -> dict[int, float]:
+    """Return the angles of the sharp edges between the faces of a block that one tool touches, positive where the other
+    tool is convex."""
+    shape, up = reading.shape, rotation(options.rotate).T @ UP
+    below = up if options.side == "punch" else -up
+    chosen = numbers_of(options.faces) if options.faces else side_of_sheet(gmsh, reading.path, shape.tags, below)
+    own = shape.of(tag for tag in chosen if tag in shape.tags)
+    sign = np.sign(shape.area[own] @ shape.normal[own] @ below)
+    return {number: sign * edge.angle for number, edge in shape.edges_inside(chosen).items() if edge.angle}
 
 
 def rounded(thickness: float | None) -> float | None:

@@ -490,16 +490,16 @@ def read_cad(gmsh: Any, path: Path, options: argparse.Namespace, progress: Progr
     file_tag = {tag: number.get(tag, tag) for tag in tags}
     if options.taken:
         tags = sorted(options.taken)
-        if options.sharp and in_solids.issuperset(tags):
-            origin = fillets.rounded(gmsh, tags, options.sharp)
-            file_tag = {tag: file_tag.get(old, 0) for tag, old in origin.items()}
-            tags = list(file_tag)
-            in_solids = set(tags)
-            model.notes.append(fillets.said_of(options.sharp))
     elif not options.closed and options.thickness and not options.faces and set(tags) <= in_solids:
         # The punch touches a sheet from above.
         up = (0, 0, -1 if options.side == "die" else 1)
         tags = faces.side_of_sheet(gmsh, path, tags, moved.rotation(options.rotate).T @ up)
+    if options.sharp and in_solids.issuperset(tags):
+        origin = fillets.rounded(gmsh, tags, options.sharp)
+        file_tag = {tag: file_tag.get(old, 0) for tag, old in origin.items()}
+        tags = list(file_tag)
+        in_solids = set(tags)
+        model.notes.append(fillets.said_of(options.sharp))
     twins = doubled(gmsh, tags)
     if twins:
         model.notes.append("doubled faces left out: " + ", ".join(f"{tag} (on {other})" for tag, other in twins))

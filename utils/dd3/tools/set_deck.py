@@ -12,8 +12,9 @@ from dd3.tools.set_blank import Blank
 from dd3.tools.tool_set import ToolSet
 
 # Elements of the undivided blank, about; length of the smallest ones over the least radius of the tools, on which one
-# turns by 19 degrees, and over the thickness at least; most levels.
-ELEMENTS, OF_RADIUS, OF_THICKNESS, LEVELS = 1000, 1 / 3, 1.0, 4
+# turns by 19 degrees, and over the thickness at least; height of an arc of that radius over its chord in an element,
+# over the thickness, at most (the program warns of more by W109); most levels.
+ELEMENTS, OF_RADIUS, OF_THICKNESS, SAG, LEVELS = 1000, 1 / 3, 1.0, 0.1, 4
 # Elements around a blank that is cut.
 AROUND = 2.0
 # Pressure of the holder, MPa.
@@ -31,7 +32,8 @@ STEEL = """# Replace this by your material; dd3 identify makes one from measurem
   yield = von_mises
   hardening = swift K=530 Y0=150 n=0.22"""
 DECK = """# Draws {part} and releases it; tools by {command}
-# The highest point of the die's binder is at z = 0; the punch starts at the blank and moves down.
+# The highest point of the die's binder, without a holder that of the die, is at z = 0; the punch starts at the blank and
+# moves down.
 *TITLE
   {part}
 
@@ -57,13 +59,7 @@ DECK = """# Draws {part} and releases it; tools by {command}
 {cut}
 {tools}*CONTACT
 
-{support}{closing}*PHASE clamp
-  control = load
-  trial = 1.0
-  hold = die
-  hold = punch
-{presses}{free}
-*PHASE draw
+{support}{closing}{clamp}*PHASE draw
   control = punch
   trial = 1.0
   move = punch 0 0 -${{depth}}
@@ -82,12 +78,18 @@ TOOL = """*TOOL {name}
 """
 CONTACT = {"punch": "z_max", "die": "z_min", "holder": "z_max", "pad": "z_min"}
 # Friction holds the sheet sideways, once the holder or a pad is on it.
-SUPPORT = """# The middle of the blank does not move sideways while the holder closes.
+SUPPORT = """# The middle of the blank does not move sideways, as it lies freely on the die at first.
 *SET middle
   near = {middle} 0
 
 """
 FREE = "  free = middle x y\n"
+# Without holder and pad.
+HELD = """*BOUNDARY middle
+  set = middle
+  fix = x y
+
+"""
 BLANK = "blank.txt"  # outline of the blank
 CUT = """
 *TRIM blank
@@ -104,12 +106,20 @@ CLOSING = """# The holder bends the blank onto the die.
   displace = middle y 0
 
 """
+CLAMP = """*PHASE clamp
+  control = load
+  trial = 1.0
+  hold = die
+  hold = punch
+{presses}{free}
+"""
 
 
 def deck(options: argparse.Namespace, material: str, tools: ToolSet, command: str) -> str:
     """Return the input file: name of the material, tools, the command that made these."""
     low, high = tools.blank.box
-    smallest = max(OF_RADIUS * tools.radius, OF_THICKNESS * options.thickness)
+    smallest = max(min(OF_RADIUS * tools.radius, (8 * SAG * options.thickness * tools.radius)**0.5),
+                   OF_THICKNESS * options.thickness)
     levels = int(np.clip(np.ceil(np.log2((tools.blank.area / ELEMENTS)**0.5 / smallest)), 0, LEVELS))
     length = 2**levels * smallest
     if tools.blank.cut:  # that does not meet the border of the mesh
@@ -122,6 +132,8 @@ def deck(options: argparse.Namespace, material: str, tools: ToolSet, command: st
     forces = [f"  {name} = {force:.3g}     # N, {force / tools.area[name]:.2g} MPa\n"
               for name, force in pressed.items()]
     presses = [f"  press = {name} 0 0 {'-' if name == 'holder' else ''}${{{name}}}\n" for name in pressed]
+    support = SUPPORT.format(middle=pair((low + high) / 2)) if tools.closing or not pressed else ""
+    support += "" if pressed else HELD
     closing = CLOSING.format(closing=tools.closing - SHORT * options.thickness) if tools.closing else ""
     return DECK.format(part=options.source.stem, command=command, thickness=f"{options.thickness:g}",
                        divisions=f"{divisions[0]} {divisions[1]} 1", length=length,
@@ -129,8 +141,8 @@ def deck(options: argparse.Namespace, material: str, tools: ToolSet, command: st
                        cut=CUT.format(file=BLANK) if tools.blank.cut else "",
                        material=include, name=material, origin=pair(low), size=pair(high - low),
                        tools="".join(TOOL.format(name=name, contact=CONTACT[name]) for name in tools.surfaces),
-                       support=SUPPORT.format(middle=pair((low + high) / 2)) if tools.closing else "",
-                       closing=closing, presses="".join(presses), free=FREE if tools.closing else "")
+                       support=support, closing=closing,
+                       clamp=CLAMP.format(presses="".join(presses), free=FREE if tools.closing else "") if pressed else "")
 
 
 def write_blank(folder: Path, blank: Blank, part: str) -> None:

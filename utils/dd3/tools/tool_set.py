@@ -14,8 +14,9 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from dd3.errors import Problem
-from dd3.tools import cad, own_flange, report, sides
-from dd3.tools.die_face import INSET, Face, Reach, TooLong, consistent, even, flange, with_face
+from dd3.tools import cad, no_holder, own_flange, report, sides
+from dd3.tools.binder import NoBinder
+from dd3.tools.die_face import INSET, Face, Reach, TooLong, consistent, estimated, even, flange, with_face
 from dd3.tools.faces import spans
 from dd3.tools.joints import box_of, find_joints
 from dd3.tools.moved import placed, rotation
@@ -30,6 +31,8 @@ SIZES = {"clearance": 0.1, "shoulder": 6.0, "margin": 5.0}
 SMALLER = {"shoulder": 4.0, "margin": 2.0}
 # Part of the projected area that is seen from the punch which may be left out.
 LEFT_OUT = 0.05
+# Part of it below which a face is a wall, which is seen along itself.
+WALL = 1e-3
 # Part of the length of the rims by which their directions outwards do not cancel, above which there is a pad.
 ONE_SIDED = 0.3
 # Times a part is meshed at most.
@@ -46,7 +49,7 @@ class ToolSet:
     """Surfaces by the names of the tools, with the highest point of the binder at z = 0, punch and holder at the start
     of their travels; these travels, the height by which the part was moved into the die, the least radius of the die's
     shoulder and that of all faces of punch and die, mm; the blank, and the areas in plan of the tools over it, mm2; the
-    drawing ratio, the root of the area of the blank over that of the punch in plan, 0 of a part with open ends; the
+    drawing ratio, the root of the area of the blank over that of the punch in plan, 0 with open ends or no holder; the
     largest distances of the faces of punch and die from the CAD, mm; lines of the report."""
 
     surfaces: dict[str, Surface] = field(default_factory=dict)
@@ -98,12 +101,15 @@ def refuse_left_out(model: cad.Model, options: argparse.Namespace) -> None:
     """Refuse a choice of faces, not made by the user, that leaves out a part of what is seen from the punch."""
     if options.faces or options.taken:
         return
-    left = {tag: area for tag, area in options.visible.items() if tag not in model.origin}
-    part = sum(left.values()) / max(sum(options.visible.values()), 1e-300)
+    total = max(sum(options.visible.values()), 1e-300)
+    left = {tag: area for tag, area in options.visible.items() if tag not in model.origin and area > WALL * total}
+    part = sum(left.values()) / total
     if part > LEFT_OUT:
-        raise Problem(f"{100 * part:.3g} % of what is seen of the tool are left out, faces {spans(list(left))}, as "
-                      f"they do not join the others smoothly: --faces {spans(list(options.visible))} takes them too, "
-                      "or choose those that one tool touches")
+        both = spans(sorted({*model.origin, *left} - {0}))
+        raise Problem(f"{100 * part:.3g} % of what is seen of the block are left out, faces {spans(list(left))}, as "
+                      "they do not join the others smoothly. If the block is a tool: "
+                      f"dd3 tool {options.source} tool.bez --toward {options.seen} makes it of all faces. If it has the "
+                      f"shape of a part: --faces {both} takes them too, or choose those that one tool touches")
 
 
 def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
@@ -117,6 +123,10 @@ def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
             break
         except TooLong as error:
             options.longest = error.length
+        except NoBinder as missing:
+            if options.advice or not no_holder.is_shallow(die):
+                raise
+            return without_holder(punch, die, distance, missing.reason, options)
     else:
         raise Problem(f"{options.source}: the binder at the rim of the part is curved too strongly")
     notes = punch.notes + die.notes
@@ -157,6 +167,30 @@ def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
         result.surfaces[name] = surface
     if all(reach.rim.closed for reach in face.reaches):
         result.ratio = (result.blank.area / result.area["punch"])**0.5
+    return result
+
+
+def without_holder(punch: Surface, die: Surface, distance: dict[str, np.ndarray], reason: str,
+                   options: argparse.Namespace) -> ToolSet:
+    """Return the tools of a part that gets no binder, both sides of it with strips as wide as the blank needs."""
+    result = ToolSet(distance=distance, lines=[("", note) for note in punch.notes + die.notes])
+    result.blank = estimated(die.net, [no_holder.outer_rim(die)[0]], result.lines, options)
+    width = options.flange or no_holder.width_for(die, result.blank.border, INSET * options.thickness)
+    punch, die = (no_holder.continued(tool, width) for tool in (punch, die))
+    result.lines.append(("holder", f"none, as {reason}: formed between punch and die, which go on by "
+                         f"{width:.3g} mm along the tangents at the rim"))
+    low, high = box_of(die.net)
+    inset = INSET * options.thickness
+    result.blank = result.blank.within(np.array([low[:2] + inset, high[:2] - inset]))
+    result.radius = min(own_flange.least_radius(tool, range(len(tool.names))) for tool in (punch, die))
+    result.shoulder = np.inf
+    result.height = -float(report.extent(die.net)[1][2])
+    result.travel = options.thickness - result.height - float(report.extent(punch.net)[0][2])
+    punch.net = turned(punch.net)
+    for name, surface, height in (("punch", punch, result.travel), ("die", die, 0.0)):
+        result.area[name] = result.blank.pressed(surface)
+        surface.net = placed(surface.net, np.eye(3), (0.0, 0.0, result.height + height))
+        result.surfaces[name] = surface
     return result
 
 
