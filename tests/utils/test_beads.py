@@ -37,7 +37,7 @@ def test_lines():
     assert len(found.lines) == 4
     for bead in found.lines:
         across = int(np.ptp(bead.points, axis=0).argmin())
-        assert np.abs(bead.points[:, across]) == pytest.approx(HALF[across] + beads.DISTANCE * THICKNESS, abs=1e-3)
+        assert np.abs(bead.points[:, across]) == pytest.approx(HALF[across] + beads.DISTANCE * THICKNESS, abs=0.01)
         assert bead.length == pytest.approx(1.5 * (HALF - CORNER)[1 - across], rel=0.1)
         assert bead.draw_in == pytest.approx(16.0) and len(bead.points) == 2
     # More is drawn in at the corners, which are none for beads.
