@@ -8,7 +8,7 @@ from helpers import call
 SAID = [("gap", (), 2, "0.05 mm apart, the widest between faces 35 and 14; --sew 0.055 joins them"),
         ("gap", ("--sew", 0.055), 0, "sheet of 1 mm (95 % of its sides)"),
         ("wide_gap", ("--sew", 0.45), 0, "sheet of 1 mm"),
-        ("missing", (), 2, "the faces are 1 mm apart, as both sides of a sheet, but the shell is open beside faces 14 21-22"),
+        ("missing", (), 2, "the faces are 1 mm apart, as both sides of a sheet, but the shell is open beside faces 14 21"),
         ("doubled", (), 0, "doubled faces left out: 36 (on 22)"),
         ("doubled", (), 0, "sheet of 1 mm (100 % of its sides)"),
         ("inner", (), 2, "2 parts"), ("merged", (), 2, "2 parts"), ("merged", ("--part", 1), 0, "sheet of 1 mm"),

@@ -405,6 +405,7 @@ def beads_of(tools: tool_set.ToolSet, options: argparse.Namespace, material: str
             raise Problem("--beads needs the program for the restraint; --program names it")
         stress = beads.curve_of(program, set_deck.material_text(options), material)
         found.force = beads.restraint(stress, options.thickness, set_deck.FRICTION)
+        found.part = found.force / beads.largest(stress, options.thickness)
     return found
 
 

@@ -154,9 +154,9 @@ def tell_open(reading: Reading, rays: Rays) -> None:
     if distance:
         free = [edge for edge, known in reading.shape.edges.items() if len(known.faces) == 1]
         beside = sorted({face for edge in free for face in reading.shape.edges[edge].faces})
-        reading.warnings.append(f"the faces are {distance:.4g} mm apart, as both sides of a sheet, but the shell is open "
-                                f"beside faces {faces.spans(beside)}: a face is missing there, or not joined; close it in "
-                                "the CAD program, or take the faces of one side by --faces")
+        reading.warnings.append(f"the faces are {distance:.4g} mm apart, as both sides of a sheet, but the shell is "
+                                f"open beside faces {faces.spans(beside)}: a face is missing there, or not joined; "
+                                "close it in the CAD program, or take the faces of one side by --faces")
 
 
 def tell_thickness(reading: Reading, request: Request) -> None:

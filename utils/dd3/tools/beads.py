@@ -2,10 +2,10 @@
 """Draw-beads that are proposed on the binder of a part: along those parts of its rim where much is drawn in against the
 rest, and which are straight. A corner restrains the sheet by the compression of its flange.
 
-The draw-in is that of the estimate of the blank in one step, or of a finished run. The beads are round ones, in which the
-sheet is bent and unbent three times (Keeler, The science of forming: how draw beads actually work). The work of bending
-of a rigid-plastic sheet in plane strain, sigma t^2/(4 r) per length and width, and the friction of a rope about the arcs
-give the restraint (compare Stoughton, Proc. 15th IDDRG (1988) 205-215).
+The draw-in is that of the estimate of the blank in one step, or of a finished run. The beads are round ones, in which
+the sheet is bent and unbent three times (Keeler, The science of forming: how draw beads actually work). The work of
+bending of a rigid-plastic sheet in plane strain, sigma t^2/(4 r) per length and width, and the friction of a rope about
+the arcs give the restraint (compare Stoughton, Proc. 15th IDDRG (1988) 205-215).
 """
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -18,18 +18,18 @@ from dd3.errors import Problem
 from dd3.programs import run_points
 from dd3.tools.set_blank import Blank, needed
 
-# Radius of a bead, distance of its middle from the rim of what is covered at the end of the draw, and margin of the blank
-# beyond that rim, with which the sheet does not leave the bead, over the thickness.
+# Radius of a bead, distance of its middle from the rim of what is covered at the end of the draw, and margin of the
+# blank beyond that rim, with which the sheet does not leave the bead, over the thickness.
 RADIUS, DISTANCE, MARGIN = 5.0, 10.0, 15.0
 # Arcs about which a round bead bends the sheet: its entry, itself, its exit, radian.
 ARCS = np.pi / 2, np.pi, np.pi / 2
 # Part of the largest draw-in by which the least one is below it, from which on beads are proposed.
 UNEVEN = 0.25
-# Radius of a convex rim over its draw-in below which it is a corner: the flange, compressed by ln(1 + 1/3), restrains it
-# as much as a bead.
+# Radius of a convex rim over its draw-in below which it is a corner: the flange, compressed by ln(1 + 1/3), restrains
+# it as much as a bead.
 CORNER = 3.0
-# Least length of a bead over its distance from the rim; step along the rim, and largest distance of the points of a bead
-# from its line, over the thickness; distance of points that are one.
+# Least length of a bead over its distance from the rim; step along the rim, and largest distance of the points of a
+# bead from its line, over the thickness; distance of points that are one.
 SHORTEST, STEP, SIMPLE, SAME = 2.0, 1.0, 0.1, 1e-3
 # Strain up to which the stress in plane strain is needed, and its steps.
 STRAIN, STEPS = 1.0, 200
@@ -64,10 +64,12 @@ class Bead:
 
 @dataclass
 class Beads:
-    """Draw-beads of a set of tools: lines, restraint, N/mm, radius, mm; why there are none."""
+    """Draw-beads of a set of tools: lines, restraint, N/mm, and this over the largest force of the sheet in plane strain;
+    radius, mm; why there are none."""
 
     lines: list[Bead] = field(default_factory=list)
     force: float = 0.0
+    part: float = 0.0
     radius: float = 0.0
     reason: str = ""
 
@@ -82,10 +84,12 @@ class Beads:
         if not self.lines:
             return [("beads", f"none, as {self.reason}; without --beads the blank has a smaller margin")]
         total = self.force * sum(bead.length for bead in self.lines)
-        return [("beads", f"restraint {self.force:.3g} N/mm, {total:.3g} N in all: round beads of {self.radius:g} mm "
-                 "radius; they lift the holder, which is not taken into account"),
-                *((f"bead_{number}", f"{bead.length:.3g} mm, from x y {pair(bead.points[0])} to {pair(bead.points[-1])}, "
-                   f"draw-in up to {bead.draw_in:.3g} mm") for number, bead in enumerate(self.lines, 1))]
+        return [("beads", f"restraint {self.force:.3g} N/mm, {100 * self.part:.2g} % of the largest force of the sheet in "
+                 f"plane strain, {total:.3g} N in all: round beads of {self.radius:g} mm radius"),
+                ("", "they may tear a part that does without: compare with --set bead=0. They lift the holder, which is "
+                 "not taken into account"),
+                *((f"bead_{number}", f"{bead.length:.3g} mm, from x y {pair(bead.points[0])} to "
+                   f"{pair(bead.points[-1])}, draw-in up to {bead.draw_in:.3g} mm") for number, bead in enumerate(self.lines, 1))]
 
 
 def pair(point: np.ndarray) -> str:
@@ -114,8 +118,9 @@ def proposed(blank: Blank, thickness: float, drawn: tuple[np.ndarray, np.ndarray
     found = [Bead(needed(rim[part] + away * out[part], SIMPLE * thickness), float(draw_in[part].max()))
              for part in stretches(chosen)]
     found = [bead for bead in found if bead.length >= SHORTEST * away]
-    reason = "" if found else f"no part of the rim whose draw-in is above {(least + most) / 2:.3g} mm is straight and long"
-    return Beads(found, radius=RADIUS * thickness, reason=reason)
+    middle = (least + most) / 2
+    return Beads(found, radius=RADIUS * thickness,
+                 reason=f"no part of the rim whose draw-in is above {middle:.3g} mm is straight and long")
 
 
 def shape_of(rim: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -149,7 +154,7 @@ def stretches(chosen: np.ndarray) -> list[np.ndarray]:
 
 
 def restraint(stress: Callable[[float], float], thickness: float, friction: float) -> float:
-    """Return the restraining force of a round bead, N/mm: `stress` by the strain in plane strain, MPa; thickness, mm."""
+    """Return the restraining force of a round bead, N/mm; `stress` by the strain in plane strain, MPa."""
     radius = (RADIUS + 0.5) * thickness  # of the middle of the sheet
     step = thickness / (4 * radius)  # mean strain over the thickness of one bending
     force = strain = 0.0
@@ -160,9 +165,14 @@ def restraint(stress: Callable[[float], float], thickness: float, friction: floa
     return float(force)
 
 
+def largest(stress: Callable[[float], float], thickness: float) -> float:
+    """Return the largest force of a sheet in plane strain, N/mm, at which it necks; `stress` as for `restraint`."""
+    return max(stress(strain) * np.exp(-strain) for strain in np.linspace(0.0, STRAIN, STEPS + 1)) * thickness
+
+
 def curve_of(program: Path, material: str, name: str) -> Callable[[float], float]:
-    """Return the stress by the strain in plane strain along x, MPa, of the material with a name, by the program; text of
-    its block."""
+    """Return the stress by the strain in plane strain along x, MPa, of a material, by the program; text and name of its
+    block."""
     done, points = run_points(program, material + POINT.format(material=name, strain=STRAIN, steps=STEPS))
     if "bead" not in points:
         raise Problem(f"the stress for the draw-beads is not found: {done.errors.strip()}")

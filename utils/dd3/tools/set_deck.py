@@ -130,7 +130,8 @@ def deck(options: argparse.Namespace, material: str, tools: ToolSet, beads: Bead
                        divisions=f"{divisions[0]} {divisions[1]} 1", length=length,
                        levels=levels, smallest=smallest, travel=f"{tools.travel:.6g}", forces="".join(forces),
                        cut=CUT.format(file=BLANK) if tools.blank.cut else "",
-                       material=material_text(options), friction=FRICTION, beads=beads.blocks(), name=material, origin=pair(low), size=pair(high - low),
+                       material=material_text(options), name=material, friction=FRICTION, beads=beads.blocks(),
+                       origin=pair(low), size=pair(high - low),
                        tools="".join(TOOL.format(name=name, contact=CONTACT[name]) for name in tools.surfaces),
                        support=SUPPORT.format(middle=pair((low + high) / 2)) if tools.closing else "",
                        closing=closing, presses="".join(presses), free=FREE if tools.closing else "")
