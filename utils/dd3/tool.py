@@ -29,7 +29,8 @@ from dd3.gmsh_session import session
 from dd3.part import setup, table
 from dd3.part.command import write_reading
 from dd3.progress import Progress
-from dd3.tools import cad, facets, mend, moved, picture, report, set_deck, sides, tool_set, trim_deck
+from dd3.sheet import Sheet
+from dd3.tools import beads, cad, facets, mend, moved, picture, report, set_deck, sides, tool_set, trim_deck
 from dd3.tools.cad import SUFFIXES as CAD
 from dd3.tools.facet_files import SUFFIXES as FACETS
 from dd3.tools.facet_files import Facets
@@ -42,6 +43,7 @@ from dd3.tools.surface import Surface, turned, write
 RATIO = 2.0  # drawing ratio up to which mild steel is drawn in one stroke, about
 RADIUS = 0.2  # least radius of an offset, over its distance
 DRAW = "draw.dat"  # input file of a set of tools
+ESTIMATE = Path()  # what --beads is without a run
 # Largest distance of a surface from CAD, and estimated one of facets, mm.
 TOLERANCE = {"cad": 0.002, "facets": 0.02, "shape": 0.002}
 
@@ -215,6 +217,9 @@ def command_line() -> argparse.ArgumentParser:
                        help="width of the die beyond the shoulder (as the blank needs)")
     whole.add_argument("--margin", type=float, metavar="mm",
                        help=f"of the blank beyond the part, or the shoulder ({tool_set.SIZES['margin']:g} thicknesses)")
+    whole.add_argument("--beads", type=Path, nargs="?", const=ESTIMATE, metavar="RUN",
+                       help="propose draw-beads by the draw-in of the estimate of the blank, or of a finished run of "
+                            f"{DRAW}; the margin is then {beads.MARGIN:g} thicknesses")
     whole.add_argument("--program", type=Path, metavar="FILE",
                        help="the program, which checks the input file (build/release/dd3imp, else dd3imp)")
     whole.add_argument("--side", choices=("punch", "die"), help="the tool that touches the faces (punch)")
@@ -249,7 +254,7 @@ def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
             parser.error(f"--{name} takes CAD: {' '.join(CAD)}")
     if options.smooth and not options.faces:
         parser.error("--smooth goes with --faces")
-    for name in ("clearance", "shoulder", "flange", "margin", "side", "material"):
+    for name in ("clearance", "shoulder", "flange", "margin", "side", "material", "beads"):
         if getattr(options, name) is not None and not options.whole:
             parser.error(f"--{name} goes with a folder, or --thickness")
     options.side = options.side or "punch"
@@ -295,6 +300,7 @@ def settle_set(options: argparse.Namespace, sizes: Mapping[str, float]) -> argpa
     """Return the options with the sizes of a set of tools that were not given, from those over the thickness."""
     options = argparse.Namespace(**vars(options))
     options.radius = options.radius or options.thickness
+    sizes = {**sizes, "margin": beads.MARGIN} if options.beads else sizes
     for name, factor in sizes.items():
         if getattr(options, name) is None:
             setattr(options, name, factor * options.thickness)
@@ -365,9 +371,12 @@ def make_set(options: argparse.Namespace, command: str) -> dict[str, report.Repo
     progress.end()
     reports = judge_set(tools, options)
     if options.target and not any(result.errors for result in reports.values()):
-        write_set(tools, options, material, command)
+        found = beads_of(tools, options, material) if options.beads else beads.Beads()
+        write_set(tools, options, material, found, command)
         reports[str(options.target / DRAW)] = report.Report(
             [f"  {'travel':<10} {tools.travel:.6g} mm", f"  {'blank':<10} {set_deck.said(options, tools.blank)}"])
+        for line in found.said() if options.beads else []:
+            reports[str(options.target / DRAW)].add(*line)
         if tools.ratio > RATIO:
             reports[str(options.target / DRAW)].warnings.append(
                 f"the drawing ratio, the root of the area of the blank over that of the punch, is {tools.ratio:.3g}: mild "
@@ -379,10 +388,38 @@ def make_set(options: argparse.Namespace, command: str) -> dict[str, report.Repo
     return reports
 
 
+def program_of(options: argparse.Namespace) -> Path | None:
+    """Return the program, None if there is none."""
+    tried = (options.program,) if options.program else ("build/release/dd3imp", "dd3imp")
+    return next((Path(found) for found in map(shutil.which, tried) if found), None)
+
+
+def beads_of(tools: tool_set.ToolSet, options: argparse.Namespace, material: str) -> beads.Beads:
+    """Return the draw-beads that are proposed, with their restraint by the material, of a name."""
+    if "holder" not in tools.surfaces or "pad" in tools.surfaces:
+        return beads.Beads(reason="there is no holder around the part that carries them")
+    drawn = None if options.beads == ESTIMATE else draw_in_of(options.beads)
+    found = beads.proposed(tools.blank, options.thickness, drawn)
+    if found.lines:
+        program = program_of(options)
+        if not program:
+            raise Problem("--beads needs the program for the restraint; --program names it")
+        stress = beads.curve_of(program, set_deck.material_text(options), material)
+        found.force = beads.restraint(stress, options.thickness, set_deck.FRICTION)
+        found.part = found.force / beads.largest(stress, options.thickness)
+    return found
+
+
+def draw_in_of(run: Path) -> tuple[np.ndarray, np.ndarray]:
+    """Return the points in plan of the rim of the sheet at the end of a run (n, 2), and their draw-in, mm."""
+    sheet = Sheet(run)
+    rim = np.concatenate(sheet.outline())
+    return sheet.points(-1)[rim, :2], sheet.values(-1, "draw_in")[0][rim]
+
+
 def check_deck(result: report.Report, options: argparse.Namespace) -> None:
     """Add what the program says of the input file of a set to its report: memory, elements, time, warnings and errors."""
-    tried = (options.program,) if options.program else ("build/release/dd3imp", "dd3imp")
-    program = next((found for found in map(shutil.which, tried) if found), None)
+    program = program_of(options)
     if not program and options.program:
         result.errors.append(f"{options.program}: no such program")
     elif not program:
@@ -415,13 +452,14 @@ def judge_set(tools: tool_set.ToolSet, options: argparse.Namespace) -> dict[str,
     return reports
 
 
-def write_set(tools: tool_set.ToolSet, options: argparse.Namespace, material: str, command: str) -> None:
-    """Write the tools of a part and the input file."""
+def write_set(tools: tool_set.ToolSet, options: argparse.Namespace, material: str, found: beads.Beads, command: str
+              ) -> None:
+    """Write the tools of a part and the input file with draw-beads."""
     options.target.mkdir(parents=True, exist_ok=True)
     for name, surface in tools.surfaces.items():
         write(options.target / f"{name}.bez", surface, [f"{name} of {options.source.name}: {command}"])
     set_deck.write_blank(options.target, tools.blank, options.source.name)
-    text = set_deck.deck(options, material, tools, command)
+    text = set_deck.deck(options, material, tools, found, command)
     (options.target / DRAW).write_text(text, encoding="utf-8")
     if options.curves:
         trim_deck.write(options, tools.height)

@@ -42,6 +42,20 @@ class Sheet:
     walls: float | None = None
 
 
+def apart(shape: Shape, rays: Rays) -> float | None:
+    """Return the distance, mm, at which most of the faces of an open shell face each other as both sides of a sheet,
+    None if they do not."""
+    chosen, weight = samples(shape, shape.tags)
+    for sign in (-1.0, 1.0):  # it has no outside
+        hits = rays.hits(chosen, sign * shape.normal[chosen], LEAST * shape.size)
+        faces = (shape.normal[chosen] * hits.normal).sum(axis=1) < OPPOSITE
+        distance = most_common(hits.distance[faces], weight[faces])
+        at = faces & (np.abs(hits.distance - distance) <= EQUAL * distance)
+        if weight[at].sum() > SHEET * weight.sum() and distance < THICKEST * np.sqrt(weight.sum() / 2):
+            return distance
+    return None
+
+
 def samples(shape: Shape, faces: Iterable[int], count: int = RAYS) -> tuple[np.ndarray, np.ndarray]:
     """Return triangles of faces, about `count` spread by area and a few of each, and the areas they stand for."""
     total = sum(shape.areas[tag] for tag in faces)

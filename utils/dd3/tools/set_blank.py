@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blank of a part: the estimate in one step of `dd3 unfold` of what the sheet has covered at the end of the draw, with a
 margin."""
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -31,10 +31,14 @@ FULL = 0.9
 
 @dataclass
 class Blank:
-    """Blank in plan: closed outline (n, 2), mm, anticlockwise, and whether it is cut along it or is its box."""
+    """Blank in plan: closed outline (n, 2), mm, anticlockwise, and whether it is cut along it or is its box; the border
+    of what is covered at the end of the draw, anticlockwise, and its points in the flat blank (m, 2), none where these
+    are not estimated."""
 
     outline: np.ndarray
     cut: bool
+    rim: np.ndarray = field(default_factory=lambda: np.zeros((0, 2)))
+    flat: np.ndarray = field(default_factory=lambda: np.zeros((0, 2)))
 
     @property
     def box(self) -> np.ndarray:
@@ -54,7 +58,7 @@ class Blank:
 
     def within(self, box: np.ndarray) -> "Blank":
         """Return the part of the blank in a box (2, 2)."""
-        return Blank(np.clip(self.outline, *box), self.cut)
+        return replace(self, outline=np.clip(self.outline, *box))
 
     def pressed(self, surface: Surface) -> float:
         """Return the area in plan of the part of a surface that is over the blank, mm2."""
@@ -68,10 +72,11 @@ def blank_of(path: Path, covered: Surface, thickness: float, margin: float) -> B
     mesh = raised(prepared(path, triangles_of(covered), [], NEAR * thickness), thickness / 2)
     balance = Balance(mesh, Sheet(EXPONENT))
     places = unfolded(path, balance)
-    border = max((places[rim] for rim in rims(path, mesh.triangles)), key=lambda points: abs(area_of(points)))
-    outline = widened(border, margin)
+    border = max(rims(path, mesh.triangles), key=lambda rim: abs(area_of(places[rim])))
+    border = border if area_of(places[border]) > 0 else border[::-1]
+    outline = widened(places[border], margin)
     box = np.prod(np.ptp(outline, axis=0))
-    return Blank(outline, area_of(outline) < FULL * box)
+    return Blank(outline, area_of(outline) < FULL * box, mesh.nodes[border, :2], places[border])
 
 
 def triangles_of(surface: Surface) -> Triangles:
@@ -122,21 +127,26 @@ def widened(outline: np.ndarray, margin: float) -> np.ndarray:
 
 
 def simplified(points: np.ndarray, tolerance: float) -> np.ndarray:
-    """Return the points of a closed line that are needed for it to stay within a distance (Douglas and Peucker 1973)."""
+    """Return the points of a closed line that are needed for it to stay within a distance."""
     far = int(np.linalg.norm(points - points[0], axis=1).argmax())
-    kept = [0, far]
     ring = np.vstack([points, points[:1]])
-    open_parts = [(0, far), (far, len(points))]
+    return np.vstack([needed(ring[:far + 1], tolerance)[:-1], needed(ring[far:], tolerance)[:-1]])
+
+
+def needed(line: np.ndarray, tolerance: float) -> np.ndarray:
+    """Return the points of an open line that are needed for it to stay within a distance (Douglas and Peucker 1973)."""
+    kept = [0, len(line) - 1]
+    open_parts = [(0, len(line) - 1)]
     while open_parts:
         first, last = open_parts.pop()
         if last - first < 2:
             continue
-        chord = ring[last] - ring[first]
-        inner = ring[first + 1:last] - ring[first]
+        chord = line[last] - line[first]
+        inner = line[first + 1:last] - line[first]
         length = np.linalg.norm(chord)
         distance = abs(inner[:, 0] * chord[1] - inner[:, 1] * chord[0]) / length
         if distance.max() > tolerance:
             middle = first + 1 + int(distance.argmax())
             kept.append(middle)
             open_parts += [(first, middle), (middle, last)]
-    return points[sorted(kept)]
+    return line[sorted(kept)]

@@ -7,6 +7,7 @@ import numpy as np
 
 from dd3.curve import write_curves
 from dd3.errors import Problem
+from dd3.tools.beads import Beads
 from dd3.tools.blocks import read_blocks
 from dd3.tools.set_blank import Blank
 from dd3.tools.tool_set import ToolSet
@@ -23,6 +24,8 @@ PRESSURE = 2.0
 STEEL_DENSITY = 7.85e-9
 # Distance from the sheet at which the holder is pressed, over the thickness.
 SHORT = 0.1
+# Coefficient of friction.
+FRICTION = 0.1
 # Least force of a pad over that of the holder: the sheet slides on the side that is held less.
 OF_HOLDER = 2.0
 STEEL = """# Replace this by your material; dd3 identify makes one from measurements.
@@ -44,7 +47,7 @@ DECK = """# Draws {part} and releases it; tools by {command}
   levels = {levels}            # which are divided where the tools are curved, down to {smallest:.2g} mm
   points = 5            # through the thickness
   depth = {travel}
-{forces}  friction = 0.1
+{forces}  friction = {friction:g}
 
 {material}
 
@@ -57,7 +60,7 @@ DECK = """# Draws {part} and releases it; tools by {command}
   thickness_points = ${{points}}
   material = {name}
 {cut}
-{tools}*CONTACT
+{tools}{beads}*CONTACT
 
 {support}{closing}{clamp}*PHASE draw
   control = punch
@@ -115,8 +118,8 @@ CLAMP = """*PHASE clamp
 """
 
 
-def deck(options: argparse.Namespace, material: str, tools: ToolSet, command: str) -> str:
-    """Return the input file: name of the material, tools, the command that made these."""
+def deck(options: argparse.Namespace, material: str, tools: ToolSet, beads: Beads, command: str) -> str:
+    """Return the input file: name of the material, tools, draw-beads, the command that made these."""
     low, high = tools.blank.box
     smallest = max(min(OF_RADIUS * tools.radius, (8 * SAG * options.thickness * tools.radius)**0.5),
                    OF_THICKNESS * options.thickness)
@@ -125,12 +128,12 @@ def deck(options: argparse.Namespace, material: str, tools: ToolSet, command: st
     if tools.blank.cut:  # that does not meet the border of the mesh
         low, high = low - AROUND * length, high + AROUND * length
     divisions = [2 * int(np.ceil(side / length / 2)) for side in high - low]
-    include = f'*INCLUDE "{options.material.resolve()}"' if options.material else STEEL
     pressed = {name: PRESSURE * tools.area[name] for name in ("holder", "pad") if name in tools.surfaces}
     if "pad" in pressed:
         pressed["pad"] = max(pressed["pad"], OF_HOLDER * pressed.get("holder", 0.0))
     forces = [f"  {name} = {force:.3g}     # N, {force / tools.area[name]:.2g} MPa\n"
               for name, force in pressed.items()]
+    forces += [f"  bead = {beads.force:.3g}            # N/mm, restraint of the draw-beads\n"] if beads.lines else []
     presses = [f"  press = {name} 0 0 {'-' if name == 'holder' else ''}${{{name}}}\n" for name in pressed]
     support = SUPPORT.format(middle=pair((low + high) / 2)) if tools.closing or not pressed else ""
     support += "" if pressed else HELD
@@ -139,7 +142,8 @@ def deck(options: argparse.Namespace, material: str, tools: ToolSet, command: st
                        divisions=f"{divisions[0]} {divisions[1]} 1", length=length,
                        levels=levels, smallest=smallest, travel=f"{tools.travel:.6g}", forces="".join(forces),
                        cut=CUT.format(file=BLANK) if tools.blank.cut else "",
-                       material=include, name=material, origin=pair(low), size=pair(high - low),
+                       material=material_text(options), name=material, friction=FRICTION, beads=beads.blocks(),
+                       origin=pair(low), size=pair(high - low),
                        tools="".join(TOOL.format(name=name, contact=CONTACT[name]) for name in tools.surfaces),
                        support=support, closing=closing,
                        clamp=CLAMP.format(presses="".join(presses), free=FREE if tools.closing else "") if pressed else "")
@@ -171,6 +175,11 @@ def density_in(path: Path) -> float | None:
 def pair(values: np.ndarray) -> str:
     """Return two numbers as words."""
     return " ".join(f"{value + 0.0:.6g}" for value in np.round(values, 9))
+
+
+def material_text(options: argparse.Namespace) -> str:
+    """Return the block of the material, or the line that includes it."""
+    return f'*INCLUDE "{options.material.resolve()}"' if options.material else STEEL
 
 
 def material_in(path: Path | None) -> str:
