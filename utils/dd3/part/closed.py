@@ -4,8 +4,8 @@
 The faces keep their surfaces: wires are taken out of them and edges go on over an opening (see `filling`). That is done
 on both sides of a solid, and the faces through its thickness are left out. Notches of a solid, and holes for which that
 does not do, such as one over a whole radius, are taken out of the solid by OpenCASCADE, which extends the faces around
-them until they meet. If both fail, or of a surface, only the side that the tools touch is kept. If that has openings
-left, the sheet is replaced by its extruded profile, where it has one (see `profile`).
+them until they meet. If both fail, or of a surface, only the side that the tools touch is kept. A solid that is bent
+along parallel lines is replaced by its profile, extruded beyond its ends (see `profile`).
 """
 import tempfile
 from collections import Counter
@@ -65,9 +65,12 @@ def closed_part(gmsh: Any, reading: Reading, faces: list[int]) -> Closed | None:
     fault of the reading. The session has the part as it was read."""
     shape = reading.shape
     openings, outer = openings_of(gmsh, shape, faces)
+    curves = curves_of(gmsh, reading.path, shape, faces)
+    profile = profile_of(shape, reading.sheet, reading.bends) if reading.solid else None
+    if profile:
+        return extruded(gmsh, reading, profile, faces, openings, curves)
     if not openings:
         return None
-    curves = curves_of(gmsh, reading.path, shape, faces)
     both = [openings_of(gmsh, shape, side) for side in reading.sheet.sides]
     inside = {tuple(middle(gmsh, edge)): edge for edge in shape.edges_inside(faces)}
     left: list[Opening] = []
@@ -78,9 +81,6 @@ def closed_part(gmsh: Any, reading: Reading, faces: list[int]) -> Closed | None:
         if side is None:
             side = side_of(gmsh, shape, text, set(faces), outer)
             left = side.filled(openings)
-    profile = profile_of(shape, reading.sheet, reading.bends) if left and reading.solid else None
-    if profile:
-        return extruded(gmsh, reading, profile, faces, openings, curves)
     large = [opening for opening in left if opening.size > LARGE * shape.size]
     for opening in left:
         if any(opening is one for one in large):
@@ -105,7 +105,7 @@ def closed_part(gmsh: Any, reading: Reading, faces: list[int]) -> Closed | None:
 
 def extruded(gmsh: Any, reading: Reading, profile: Profile, faces: list[int], openings: list[Opening],
              curves: list[np.ndarray]) -> Closed:
-    """Return the extruded profile of a part, longer than the part so that the blank is cut at its ends too."""
+    """Return the extruded profile of a part, longer than the part so that the blank covers it and is cut at its ends."""
     beyond = BEYOND_ENDS * (reading.sheet.thickness or 0.0)
     profile = replace(profile, low=profile.low - beyond, high=profile.high + beyond)
     with silence():
@@ -113,8 +113,8 @@ def extruded(gmsh: Any, reading: Reading, profile: Profile, faces: list[int], op
         text = written_by(gmsh)
         read_text(gmsh, text)
     numbers, edges = faces_of(gmsh, profile), edges_of(gmsh, profile, reading.shape)
-    notes = [*reading.left_out, *reading.notes, "filled by the profile of the bent part, which goes on beyond its "
-             "ends: " + summary([one.words for one in openings])]
+    notes = [*reading.left_out, *reading.notes, f"profile of the bent part, continued by {beyond:.3g} mm beyond its ends",
+             *(["filled: " + summary([one.words for one in openings])] if openings else [])]
     return Closed(text, numbers, [tag for tag, number in numbers.items() if number in set(faces)], edges, openings,
                   curves, notes)
 
