@@ -55,6 +55,8 @@ def read_for_tools(options: argparse.Namespace) -> Reading:
 
 def settle(reading: Reading, options: argparse.Namespace, up: np.ndarray, given: bool) -> None:
     """Set what is taken from the reading; `given`: the direction `up` is the user's."""
+    if reading.direction and not given:
+        reading.direction.name = "axis z"
     if reading.direction is None or options.faces:  # with faces of the user's choice the part is not judged
         reading.faults = reading.faults if reading.direction is None else []
     elif not given and reading.best is not None and turns(reading):
@@ -103,18 +105,20 @@ def turns(reading: Reading) -> bool:
     direction, best = reading.direction, reading.best
     assert direction and best
     closed = bool(angle_between(direction.vector, best.vector) > REVERSED)
-    return reading.sheet.kind != "block" and best.free and (closed or not direction.free)
+    return reading.sheet.kind != "block" and (not direction.free or (best.free and closed))
 
 
 def take(reading: Reading) -> Direction:
-    """Take and return another direction: the opposite one, if the part has no undercut from there, else the best."""
+    """Take and return another direction: the opposite one, if the part has no undercut from there, else the best one,
+    also where the part is refused."""
     old, chosen = reading.direction, reading.best
     assert old and chosen
     reading.faults = []
     reading.directions = [one for one in reading.directions if one is not old]
     chosen = next((one for one in reading.directions if one.free and one.vector @ old.vector < -PARALLEL), chosen)
     read_upper(reading, chosen)
-    reading.notes.append(f"turned: {chosen.words} becomes +z, from which the punch comes")
+    if chosen.free:
+        reading.notes.append(f"turned: {chosen.words} becomes +z, from which the punch comes")
     return chosen
 
 
