@@ -231,7 +231,8 @@ def tell_undercut(reading: Reading) -> None:
         said = (f"undercut at faces {named} from {direction.words} ({text}); from {other.words} there is none: "
                 f"--toward {other.components}")
     else:
-        said = (f"undercut at faces {named}: not in one stroke from any direction; from {other.words} they are {text}")
+        said = (f"undercut at faces {named}: not in one stroke from any direction; from {direction.words} they are "
+                f"{text}")
         if reading.bends:
             said += f"; the part is bent along {len(reading.bends)} straight lines, which takes more than one stroke"
     reading.faults.append(Fault(said, faces=list(hidden)))

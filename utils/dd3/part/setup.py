@@ -9,6 +9,7 @@ import numpy as np
 
 from dd3.gmsh_session import session
 from dd3.part.closed import closed_part
+from dd3.part.directions import Direction
 from dd3.part.features import read_roles
 from dd3.part.loops import find_loops
 from dd3.part.openings import curves_of
@@ -24,7 +25,7 @@ UP = np.array([0.0, 0.0, 1.0])
 LEVEL = 0.01
 # Angle from which the direction that is proposed is another one, degrees.
 OTHER = 60.0
-# Cosine between directions that are the same for a block.
+# Cosine between directions that are the same.
 PARALLEL = 0.999
 # That from which it is the other side, degrees.
 REVERSED = 135.0
@@ -58,11 +59,12 @@ def read_for_tools(options: argparse.Namespace) -> Reading:
 
 def settle(reading: Reading, options: argparse.Namespace, up: np.ndarray, given: bool) -> None:
     """Set what is taken from the reading; `given`: the direction `up` is the user's."""
+    if reading.direction and not given:
+        reading.direction.name = "axis z"
     if reading.direction is None or options.faces:  # with faces of the user's choice the part is not judged
         reading.faults = reading.faults if reading.direction is None else []
     elif not given and reading.best is not None and turns(reading):
-        take(reading)
-        up = reading.best.vector
+        up = take(reading).vector
     if options.toward is not None or not given:
         options.rotate = turn_to_z(up)
     options.thickness = options.thickness or rounded(reading.sheet.thickness)
@@ -131,16 +133,21 @@ def turns(reading: Reading) -> bool:
     direction, best = reading.direction, reading.best
     assert direction and best
     closed = bool(angle_between(direction.vector, best.vector) > REVERSED)
-    return reading.sheet.kind != "block" and best.free and (closed or not direction.free)
+    return reading.sheet.kind != "block" and (not direction.free or (best.free and closed))
 
 
-def take(reading: Reading) -> None:
-    """Take the best direction."""
-    assert reading.best
+def take(reading: Reading) -> Direction:
+    """Take and return another direction: the opposite one, if the part has no undercut from there, else the best one,
+    also where the part is refused."""
+    old, chosen = reading.direction, reading.best
+    assert old and chosen
     reading.faults = []
-    reading.directions = [one for one in reading.directions if one is not reading.direction]
-    read_upper(reading, reading.best)
-    reading.notes.append(f"turned: {reading.best.words} becomes +z, from which the punch comes")
+    reading.directions = [one for one in reading.directions if one is not old]
+    chosen = next((one for one in reading.directions if one.free and one.vector @ old.vector < -PARALLEL), chosen)
+    read_upper(reading, chosen)
+    if chosen.free:
+        reading.notes.append(f"turned: {chosen.words} becomes +z, from which the punch comes")
+    return chosen
 
 
 def advice(reading: Reading, up: np.ndarray) -> str:
