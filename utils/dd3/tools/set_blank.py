@@ -12,8 +12,8 @@ from dd3.tools.plane import crosses, inside
 from dd3.tools.surface import Surface, areas_at, grid, points_at
 from dd3.unfold import Balance, Sheet, Triangles, area_vectors, prepared, rims, unfolded
 
-# Patches above which each becomes four triangles in place of eight, and above which two.
-MANY, MOST = 1000, 2000
+# Triangles of a patch, and the number of patches up to which it gets as many.
+TRIANGLES = {8: 1000.0, 4: 2000.0, 2: np.inf}
 # Exponent of the hardening law of the estimate. With that of a mild steel, 0.2, the areas of two trays are within 0.4 %
 # of these, and it takes four times as long.
 EXPONENT = 0.5
@@ -69,9 +69,7 @@ class Blank:
 
 def blank_of(path: Path, covered: Surface, thickness: float, margin: float) -> Blank:
     """Return the blank that lies on a surface, of one piece and seen from above, and is wider by a margin, mm."""
-    mesh = raised(prepared(path, triangles_of(covered), [], NEAR * thickness), thickness / 2)
-    balance = Balance(mesh, Sheet(EXPONENT))
-    places = unfolded(path, balance)
+    mesh, places = laid_flat(path, covered, thickness)
     border = max(rims(path, mesh.triangles), key=lambda rim: abs(area_of(places[rim])))
     border = border if area_of(places[border]) > 0 else border[::-1]
     outline = widened(places[border], margin)
@@ -79,15 +77,28 @@ def blank_of(path: Path, covered: Surface, thickness: float, margin: float) -> B
     return Blank(outline, area_of(outline) < FULL * box, mesh.nodes[border, :2], places[border])
 
 
-def triangles_of(surface: Surface) -> Triangles:
-    """Return the patches as triangles around their middles, those of very many between their corners."""
+def laid_flat(path: Path, covered: Surface, thickness: float) -> tuple[Triangles, np.ndarray]:
+    """Return the middle of the sheet on a surface as triangles, and the places of its nodes in the flat blank (n, 2).
+    Fewer triangles have an estimate where slivers beside curved edges of patches hinder it."""
+    def laid(count: int) -> tuple[Triangles, np.ndarray]:
+        mesh = raised(prepared(path, triangles_of(covered, count), [], NEAR * thickness), thickness / 2)
+        return mesh, unfolded(path, Balance(mesh, Sheet(EXPONENT)))
+
+    *finer, last = [count for count, most in TRIANGLES.items() if len(covered.net) <= most]
+    for count in finer:
+        with suppress(Problem):
+            return laid(count)
+    return laid(last)
+
+
+def triangles_of(surface: Surface, count: int) -> Triangles:
+    """Return the patches as `count` triangles each, 8 or 4 around their middles, 2 between their corners."""
     around = np.array([[0, 0], [.5, 0], [1, 0], [1, .5], [1, 1], [.5, 1], [0, 1], [0, .5]])
-    around = around[::2] if len(surface.net) > MANY else around
-    middle = [[.5, .5]] if len(surface.net) <= MOST else []
-    u, v = np.array([*middle, *around]).T
+    around = around if count == 8 else around[::2]
+    u, v = np.array([*([[.5, .5]] if count > 2 else []), *around]).T
     nodes = points_at(surface.net, u, v)
     rim = np.arange(1, len(u))
-    of_patch = (np.stack([np.zeros_like(rim), rim, np.roll(rim, -1)], axis=1) if middle
+    of_patch = (np.stack([np.zeros_like(rim), rim, np.roll(rim, -1)], axis=1) if count > 2
                 else np.array([[0, 1, 2], [0, 2, 3]]))
     first = len(u) * np.arange(len(nodes))[:, None, None]
     return Triangles(nodes.reshape(-1, 3), (first + of_patch).reshape(-1, 3))
