@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blank of a part: the estimate in one step of `dd3 unfold` of what the sheet has covered at the end of the draw, with a
 margin."""
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
