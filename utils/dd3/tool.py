@@ -29,7 +29,7 @@ from dd3.gmsh_session import session
 from dd3.part import setup, table
 from dd3.part.command import write_reading
 from dd3.progress import Progress
-from dd3.tools import cad, facets, mend, moved, picture, report, set_deck, sides, tool_set, trim_deck
+from dd3.tools import cad, facets, mend, moved, pad_force, picture, report, set_deck, set_material, sides, tool_set, trim_deck
 from dd3.tools.cad import SUFFIXES as CAD
 from dd3.tools.facet_files import SUFFIXES as FACETS
 from dd3.tools.facet_files import Facets
@@ -218,7 +218,9 @@ def command_line() -> argparse.ArgumentParser:
     whole.add_argument("--program", type=Path, metavar="FILE",
                        help="the program, which checks the input file (build/release/dd3imp, else dd3imp)")
     whole.add_argument("--side", choices=("punch", "die"), help="the tool that touches the faces (punch)")
-    whole.add_argument("--material", type=Path, metavar="FILE", help="file with a *MATERIAL for the input file")
+    whole.add_argument("--material", type=Path, metavar="FILE",
+                       help="file with a *MATERIAL for the input file, or the name of one of the library, such as dc06 "
+                            "(a mild steel)")
     return parser
 
 
@@ -255,6 +257,7 @@ def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
     options.side = options.side or "punch"
     options.closed = options.taken = None
     options.curves, options.roles, options.angles, options.sharp, options.visible = [], {}, {}, {}, {}
+    options.holes = []
     if options.whole:
         check_set(parser, options)
     options.tolerance = options.tolerance or TOLERANCE[options.kind]
@@ -333,7 +336,8 @@ def say(title: str, source: Path, result: report.Report) -> None:
 def make_set(options: argparse.Namespace, command: str) -> dict[str, report.Report]:
     """Read a part, write punch, die, holder and the input file; return the reports by the names of the files. No tools
     are made of a part that cannot be drawn, and none is written if one has errors."""
-    material = set_deck.material_in(options.material)
+    options.material = set_material.found(options.material)
+    set_material.name_of(options.material)
     reading = setup.read_for_tools(options)
     say(str(options.source), options.source, report.Report(table.short(reading), reading.warnings,
                                                            [fault.text for fault in reading.faults]))
@@ -348,9 +352,14 @@ def make_set(options: argparse.Namespace, command: str) -> dict[str, report.Repo
     progress.end()
     reports = judge_set(tools, options)
     if options.target and not any(result.errors for result in reports.values()):
-        write_set(tools, options, material, command)
+        if "pad" in tools.surfaces:
+            set_pad_force(tools, options)
+        write_set(tools, options, command)
         reports[str(options.target / DRAW)] = report.Report(
             [f"  {'travel':<10} {tools.travel:.6g} mm", f"  {'blank':<10} {set_deck.said(options, tools.blank)}"])
+        for line in [set_material.said(options.material), *set_deck.notes(options, tools)]:
+            reports[str(options.target / DRAW)].add(*line)
+        reports[str(options.target / DRAW)].warnings += set_material.warnings(options.material)
         if tools.ratio > RATIO:
             reports[str(options.target / DRAW)].warnings.append(
                 f"the drawing ratio, the root of the area of the blank over that of the punch, is {tools.ratio:.3g}: mild "
@@ -362,10 +371,25 @@ def make_set(options: argparse.Namespace, command: str) -> dict[str, report.Repo
     return reports
 
 
+def program_of(options: argparse.Namespace) -> str | None:
+    """Return the program, None if there is none."""
+    tried = (options.program,) if options.program else ("build/release/dd3imp", "dd3imp")
+    return next((found for found in map(shutil.which, tried) if found), None)
+
+
+def set_pad_force(tools: tool_set.ToolSet, options: argparse.Namespace) -> None:
+    """Set the force of the pad, which is not less than by its pressure, if there is the program."""
+    program = program_of(options)
+    if program:
+        least = set_deck.PRESSURE * tools.area["pad"]
+        tools.pad_force = max(least, pad_force.needed(tools, set_material.stress_of(Path(program), options.material),
+                                                      set_deck.PRESSURE * tools.area.get("holder", 0.0), options,
+                                                      set_deck.FRICTION))
+
+
 def check_deck(result: report.Report, options: argparse.Namespace) -> None:
     """Add what the program says of the input file of a set to its report: memory, elements, time, warnings and errors."""
-    tried = (options.program,) if options.program else ("build/release/dd3imp", "dd3imp")
-    program = next((found for found in map(shutil.which, tried) if found), None)
+    program = program_of(options)
     if not program and options.program:
         result.errors.append(f"{options.program}: no such program")
     elif not program:
@@ -398,13 +422,13 @@ def judge_set(tools: tool_set.ToolSet, options: argparse.Namespace) -> dict[str,
     return reports
 
 
-def write_set(tools: tool_set.ToolSet, options: argparse.Namespace, material: str, command: str) -> None:
+def write_set(tools: tool_set.ToolSet, options: argparse.Namespace, command: str) -> None:
     """Write the tools of a part and the input file."""
     options.target.mkdir(parents=True, exist_ok=True)
     for name, surface in tools.surfaces.items():
         write(options.target / f"{name}.bez", surface, [f"{name} of {options.source.name}: {command}"])
     set_deck.write_blank(options.target, tools.blank, options.source.name)
-    text = set_deck.deck(options, material, tools, command)
+    text = set_deck.deck(options, tools, command)
     (options.target / DRAW).write_text(text, encoding="utf-8")
     if options.curves:
         trim_deck.write(options, tools.height)
