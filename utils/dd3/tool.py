@@ -30,7 +30,21 @@ from dd3.part import setup, table
 from dd3.part.command import write_reading
 from dd3.progress import Progress
 from dd3.sheet import Sheet
-from dd3.tools import beads, cad, facets, mend, moved, picture, report, set_deck, sides, tool_set, trim_deck
+from dd3.tools import (
+    beads,
+    cad,
+    facets,
+    mend,
+    moved,
+    pad_force,
+    picture,
+    report,
+    set_deck,
+    set_material,
+    sides,
+    tool_set,
+    trim_deck,
+)
 from dd3.tools.cad import SUFFIXES as CAD
 from dd3.tools.facet_files import SUFFIXES as FACETS
 from dd3.tools.facet_files import Facets
@@ -223,7 +237,9 @@ def command_line() -> argparse.ArgumentParser:
     whole.add_argument("--program", type=Path, metavar="FILE",
                        help="the program, which checks the input file (build/release/dd3imp, else dd3imp)")
     whole.add_argument("--side", choices=("punch", "die"), help="the tool that touches the faces (punch)")
-    whole.add_argument("--material", type=Path, metavar="FILE", help="file with a *MATERIAL for the input file")
+    whole.add_argument("--material", type=Path, metavar="FILE",
+                       help="file with a *MATERIAL for the input file, or the name of one of the library, such as dc06 "
+                            "(a mild steel)")
     return parser
 
 
@@ -261,6 +277,7 @@ def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
     options.closed = options.taken = None
     options.curves, options.roles, options.angles, options.sharp, options.visible = [], {}, {}, {}, {}
     options.seen = ""
+    options.holes = []
     if options.whole:
         check_set(parser, options)
     options.tolerance = options.tolerance or TOLERANCE[options.kind]
@@ -280,20 +297,20 @@ def check_set(parser: argparse.ArgumentParser, options: argparse.Namespace) -> N
         parser.error("--clearance takes a number that is not negative")
 
 
-def tools_of(gmsh: Any, options: argparse.Namespace, progress: Progress) -> tool_set.ToolSet:
-    """Return the tools of a part; where their drawing ratio is too large, those with a smaller shoulder and margin, as
-    far as these were not given."""
+def tools_of(gmsh: Any, options: argparse.Namespace, progress: Progress) -> tuple[tool_set.ToolSet, argparse.Namespace]:
+    """Return the tools of a part and the options with all sizes; where the drawing ratio is too large, those with a
+    smaller shoulder and margin, as far as these were not given."""
     settled = settle_set(options, tool_set.SIZES)
     tools = tool_set.made(gmsh, settled, progress)
     smaller = settle_set(options, tool_set.SIZES | tool_set.SMALLER)
     if tools.ratio <= RATIO or vars(smaller) == vars(settled):
-        return tools
+        return tools, settled
     again = tool_set.made(gmsh, smaller, progress)
     if again.ratio >= tools.ratio:
-        return tools
+        return tools, settled
     again.lines.append(("ratio", f"shoulder of {smaller.shoulder:.3g} mm and margin of {smaller.margin:.3g} mm, as the "
                         f"drawing ratio is {tools.ratio:.3g} with {settled.shoulder:.3g} and {settled.margin:.3g} mm"))
-    return again
+    return again, smaller
 
 
 def settle_set(options: argparse.Namespace, sizes: Mapping[str, float]) -> argparse.Namespace:
@@ -357,7 +374,8 @@ def say(title: str, source: Path, result: report.Report) -> None:
 def make_set(options: argparse.Namespace, command: str) -> dict[str, report.Report]:
     """Read a part, write punch, die, holder and the input file; return the reports by the names of the files. No tools
     are made of a part that cannot be drawn, and none is written if one has errors."""
-    material = set_deck.material_in(options.material)
+    options.material = set_material.found(options.material)
+    set_material.name_of(options.material)
     reading = setup.read_for_tools(options)
     say(str(options.source), options.source, report.Report(table.short(reading), reading.warnings,
                                                            [fault.text for fault in reading.faults]))
@@ -367,16 +385,20 @@ def make_set(options: argparse.Namespace, command: str) -> dict[str, report.Repo
         sys.exit(2)
     progress = Progress(options.source.name)
     with session() as gmsh:
-        tools = tools_of(gmsh, options, progress)
+        tools, options = tools_of(gmsh, options, progress)
     progress.end()
     reports = judge_set(tools, options)
     if options.target and not any(result.errors for result in reports.values()):
-        found = beads_of(tools, options, material) if options.beads else beads.Beads()
-        write_set(tools, options, material, found, command)
+        if "pad" in tools.surfaces:
+            set_pad_force(tools, options)
+        found = beads_of(tools, options) if options.beads else beads.Beads()
+        write_set(tools, options, found, command)
         reports[str(options.target / DRAW)] = report.Report(
             [f"  {'travel':<10} {tools.travel:.6g} mm", f"  {'blank':<10} {set_deck.said(options, tools.blank)}"])
-        for line in found.said() if options.beads else []:
+        for line in [set_material.said(options.material), *set_deck.notes(options, tools),
+                     *(found.said() if options.beads else [])]:
             reports[str(options.target / DRAW)].add(*line)
+        reports[str(options.target / DRAW)].warnings += set_material.warnings(options.material)
         if tools.ratio > RATIO:
             reports[str(options.target / DRAW)].warnings.append(
                 f"the drawing ratio, the root of the area of the blank over that of the punch, is {tools.ratio:.3g}: mild "
@@ -394,8 +416,8 @@ def program_of(options: argparse.Namespace) -> Path | None:
     return next((Path(found) for found in map(shutil.which, tried) if found), None)
 
 
-def beads_of(tools: tool_set.ToolSet, options: argparse.Namespace, material: str) -> beads.Beads:
-    """Return the draw-beads that are proposed, with their restraint by the material, of a name."""
+def beads_of(tools: tool_set.ToolSet, options: argparse.Namespace) -> beads.Beads:
+    """Return the draw-beads that are proposed, with their restraint by the material."""
     if "holder" not in tools.surfaces or "pad" in tools.surfaces:
         return beads.Beads(reason="there is no holder around the part that carries them")
     drawn = None if options.beads == ESTIMATE else draw_in_of(options.beads)
@@ -404,10 +426,20 @@ def beads_of(tools: tool_set.ToolSet, options: argparse.Namespace, material: str
         program = program_of(options)
         if not program:
             raise Problem("--beads needs the program for the restraint; --program names it")
-        stress = beads.curve_of(program, set_deck.material_text(options), material)
+        stress = set_material.stress_of(program, options.material)
         found.force = beads.restraint(stress, options.thickness, set_deck.FRICTION)
         found.part = found.force / beads.largest(stress, options.thickness)
     return found
+
+
+def set_pad_force(tools: tool_set.ToolSet, options: argparse.Namespace) -> None:
+    """Set the force of the pad, which is not less than by its pressure, if there is the program."""
+    program = program_of(options)
+    if program:
+        least = set_deck.PRESSURE * tools.area["pad"]
+        tools.pad_force = max(least, pad_force.needed(tools, set_material.stress_of(program, options.material),
+                                                      set_deck.PRESSURE * tools.area.get("holder", 0.0), options,
+                                                      set_deck.FRICTION))
 
 
 def draw_in_of(run: Path) -> tuple[np.ndarray, np.ndarray]:
@@ -452,14 +484,13 @@ def judge_set(tools: tool_set.ToolSet, options: argparse.Namespace) -> dict[str,
     return reports
 
 
-def write_set(tools: tool_set.ToolSet, options: argparse.Namespace, material: str, found: beads.Beads, command: str
-              ) -> None:
+def write_set(tools: tool_set.ToolSet, options: argparse.Namespace, found: beads.Beads, command: str) -> None:
     """Write the tools of a part and the input file with draw-beads."""
     options.target.mkdir(parents=True, exist_ok=True)
     for name, surface in tools.surfaces.items():
         write(options.target / f"{name}.bez", surface, [f"{name} of {options.source.name}: {command}"])
     set_deck.write_blank(options.target, tools.blank, options.source.name)
-    text = set_deck.deck(options, material, tools, found, command)
+    text = set_deck.deck(options, tools, found, command)
     (options.target / DRAW).write_text(text, encoding="utf-8")
     if options.curves:
         trim_deck.write(options, tools.height)

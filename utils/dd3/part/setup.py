@@ -34,7 +34,7 @@ REVERSED = 135.0
 def read_for_tools(options: argparse.Namespace) -> Reading:
     """Read the part of the options, and set `thickness`, `rotate` and `taken`, the faces that one tool touches, where
     they are not given, `closed`, the part without its openings if it has any, `curves` of its rims, `roles` of the faces,
-    `angles` of sharp edges, and `advice` for where no die can be made around it. The punch comes along z after the
+    `angles` of sharp edges, `holes`, and `advice` for where no die can be made around it. The punch comes along z after the
     rotation."""
     given = options.toward is not None or bool(options.rotate)
     up = rotation(options.rotate).T @ UP if options.toward is None else unit(np.array(options.toward, float))
@@ -43,6 +43,7 @@ def read_for_tools(options: argparse.Namespace) -> Reading:
         reading = read_part(gmsh, Request(options.source, options.part, None, up, options.thickness, options.scale,
                                           options.sew, options.tolerance), progress)
         progress.end()
+        options.holes = reading.holes
         settle(reading, options, up, given)
         if reading.sheet.kind == "block" and not reading.faults:
             options.angles = angles_of_block(gmsh, reading, options)

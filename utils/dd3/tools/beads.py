@@ -9,14 +9,12 @@ the arcs give the restraint (compare Stoughton, Proc. 15th IDDRG (1988) 205-215)
 """
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from dd3.errors import Problem
-from dd3.programs import run_points
 from dd3.tools.set_blank import Blank, needed
+from dd3.tools.set_material import STEPS, STRAIN
 
 # Radius of a bead, distance of its middle from the rim of what is covered at the end of the draw, and margin of the
 # blank beyond that rim, with which the sheet does not leave the bead, over the thickness.
@@ -31,14 +29,6 @@ CORNER = 3.0
 # Least length of a bead over its distance from the rim; step along the rim, and largest distance of the points of a
 # bead from its line, over the thickness; distance of points that are one.
 SHORTEST, STEP, SIMPLE, SAME = 2.0, 1.0, 0.1, 1e-3
-# Strain up to which the stress in plane strain is needed, and its steps.
-STRAIN, STEPS = 1.0, 200
-POINT = """
-*POINT bead
-  material = {material}
-  control = e11 e22 s33 s12 s23 s13
-  target = {strain} 0 0 0 0 0 steps={steps}
-"""
 BLOCK = """*DRAWBEAD {name}
   points = {points}
   force = ${{bead}}
@@ -168,13 +158,3 @@ def restraint(stress: Callable[[float], float], thickness: float, friction: floa
 def largest(stress: Callable[[float], float], thickness: float) -> float:
     """Return the largest force of a sheet in plane strain, N/mm, at which it necks; `stress` as for `restraint`."""
     return max(stress(strain) * np.exp(-strain) for strain in np.linspace(0.0, STRAIN, STEPS + 1)) * thickness
-
-
-def curve_of(program: Path, material: str, name: str) -> Callable[[float], float]:
-    """Return the stress by the strain in plane strain along x, MPa, of a material, by the program; text and name of its
-    block."""
-    done, points = run_points(program, material + POINT.format(material=name, strain=STRAIN, steps=STEPS))
-    if "bead" not in points:
-        raise Problem(f"the stress for the draw-beads is not found: {done.errors.strip()}")
-    strain, stress = ([row[column] for row in points["bead"]] for column in ("e11", "s11"))
-    return lambda value: float(np.interp(value, strain, stress))

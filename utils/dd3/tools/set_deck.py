@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Input file that draws a part with the tools that were made of it, and releases it."""
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from dd3.curve import write_curves
-from dd3.errors import Problem
+from dd3.tools import set_material
 from dd3.tools.beads import Beads
-from dd3.tools.blocks import read_blocks
+from dd3.tools.pad_force import Pin
 from dd3.tools.set_blank import Blank
 from dd3.tools.tool_set import ToolSet
 
@@ -20,20 +21,12 @@ ELEMENTS, OF_RADIUS, OF_THICKNESS, SAG, LEVELS = 1000, 1 / 3, 1.0, 0.1, 4
 AROUND = 2.0
 # Pressure of the holder, MPa.
 PRESSURE = 2.0
-# Density of steel, of which the weight is told without a material, t/mm3.
-STEEL_DENSITY = 7.85e-9
 # Distance from the sheet at which the holder is pressed, over the thickness.
 SHORT = 0.1
 # Coefficient of friction.
 FRICTION = 0.1
-# Least force of a pad over that of the holder: the sheet slides on the side that is held less.
-OF_HOLDER = 2.0
-STEEL = """# Replace this by your material; dd3 identify makes one from measurements.
-*MATERIAL steel
-  young = 2.1e5
-  poisson = 0.3
-  yield = von_mises
-  hardening = swift K=530 Y0=150 n=0.22"""
+# Acceleration on the earth, mm/s2.
+EARTH = 9810.0
 DECK = """# Draws {part} and releases it; tools by {command}
 # The highest point of the die's binder, without a holder that of the die, is at z = 0; the punch starts at the blank and
 # moves down.
@@ -62,14 +55,14 @@ DECK = """# Draws {part} and releases it; tools by {command}
 {cut}
 {tools}{beads}*CONTACT
 
-{support}{closing}{clamp}*PHASE draw
+{support}{pins}{gravity}{closing}{clamp}*PHASE draw
   control = punch
   trial = 1.0
   move = punch 0 0 -${{depth}}
 
 *PHASE springback
   unload = on
-
+{light}
 *OUTPUT
   fields = every 5 mm
 """
@@ -91,6 +84,28 @@ FREE = "  free = middle x y\n"
 HELD = """*BOUNDARY middle
   set = middle
   fix = x y
+
+"""
+# The nodes of the lower face nearest to the middles of the holes.
+PIN = """# Locating pin in the hole {words}, with which the blank has to be pierced.
+*SET pin_{number}
+  near = {place} 0
+
+*BOUNDARY pin_{number}
+  set = pin_{number}
+  fix = {fixed}
+
+"""
+GRAVITY = """# The blank is laid on the die by its weight.
+*PHASE gravity
+  control = load
+  trial = 0.1
+  hold = die
+  hold = punch
+  hold = holder
+  gravity = 0 0 -{earth:g}
+  displace = middle x 0
+  displace = middle y 0
 
 """
 BLANK = "blank.txt"  # outline of the blank
@@ -118,8 +133,8 @@ CLAMP = """*PHASE clamp
 """
 
 
-def deck(options: argparse.Namespace, material: str, tools: ToolSet, beads: Beads, command: str) -> str:
-    """Return the input file: name of the material, tools, draw-beads, the command that made these."""
+def deck(options: argparse.Namespace, tools: ToolSet, beads: Beads, command: str) -> str:
+    """Return the input file: tools, draw-beads, the command that made these."""
     low, high = tools.blank.box
     smallest = max(min(OF_RADIUS * tools.radius, (8 * SAG * options.thickness * tools.radius)**0.5),
                    OF_THICKNESS * options.thickness)
@@ -129,8 +144,7 @@ def deck(options: argparse.Namespace, material: str, tools: ToolSet, beads: Bead
         low, high = low - AROUND * length, high + AROUND * length
     divisions = [2 * int(np.ceil(side / length / 2)) for side in high - low]
     pressed = {name: PRESSURE * tools.area[name] for name in ("holder", "pad") if name in tools.surfaces}
-    if "pad" in pressed:
-        pressed["pad"] = max(pressed["pad"], OF_HOLDER * pressed.get("holder", 0.0))
+    pressed |= {"pad": tools.pad_force} if "pad" in pressed and tools.pad_force else {}
     forces = [f"  {name} = {force:.3g}     # N, {force / tools.area[name]:.2g} MPa\n"
               for name, force in pressed.items()]
     forces += [f"  bead = {beads.force:.3g}            # N/mm, restraint of the draw-beads\n"] if beads.lines else []
@@ -138,12 +152,15 @@ def deck(options: argparse.Namespace, material: str, tools: ToolSet, beads: Bead
     support = SUPPORT.format(middle=pair((low + high) / 2)) if tools.closing or not pressed else ""
     support += "" if pressed else HELD
     closing = CLOSING.format(closing=tools.closing - SHORT * options.thickness) if tools.closing else ""
+    weighs = tools.closing > 0 and set_material.density_of(options.material) is not None
     return DECK.format(part=options.source.stem, command=command, thickness=f"{options.thickness:g}",
                        divisions=f"{divisions[0]} {divisions[1]} 1", length=length,
                        levels=levels, smallest=smallest, travel=f"{tools.travel:.6g}", forces="".join(forces),
                        cut=CUT.format(file=BLANK) if tools.blank.cut else "",
-                       material=material_text(options), name=material, friction=FRICTION, beads=beads.blocks(),
-                       origin=pair(low), size=pair(high - low),
+                       material=set_material.text_of(options.material), name=set_material.name_of(options.material),
+                       friction=FRICTION, beads=beads.blocks(), pins=pinned(tools.pins),
+                       gravity=GRAVITY.format(earth=EARTH) if weighs else "",
+                       light="  gravity = 0 0 0\n" if weighs else "", origin=pair(low), size=pair(high - low),
                        tools="".join(TOOL.format(name=name, contact=CONTACT[name]) for name in tools.surfaces),
                        support=support, closing=closing,
                        clamp=CLAMP.format(presses="".join(presses), free=FREE if tools.closing else "") if pressed else "")
@@ -158,18 +175,12 @@ def write_blank(folder: Path, blank: Blank, part: str) -> None:
 
 def said(options: argparse.Namespace, blank: Blank) -> str:
     """Return size, area and weight of a blank in words."""
-    density, of = density_in(options.material) if options.material else None, ""
+    density, of = set_material.density_of(options.material), "" if options.material else " of steel"
     if density is None:
-        density, of = STEEL_DENSITY, " of steel"
+        density, of = set_material.STEEL_DENSITY, " of steel"
     weight = 1e6 * blank.area * options.thickness * density
     x, y = np.ptp(blank.box, axis=0)
     return f"{x:.4g} x {y:.4g} mm, {blank.area:.4g} mm2, {weight:.3g} g{of}" + (f", cut along {BLANK}" if blank.cut else "")
-
-
-def density_in(path: Path) -> float | None:
-    """Return the density of the material of a file, t/mm3, None if it has none."""
-    text = next(block.value("density") for block in read_blocks(path) if block.keyword == "material")
-    return float(text) if text else None
 
 
 def pair(values: np.ndarray) -> str:
@@ -177,18 +188,41 @@ def pair(values: np.ndarray) -> str:
     return " ".join(f"{value + 0.0:.6g}" for value in np.round(values, 9))
 
 
-def material_text(options: argparse.Namespace) -> str:
-    """Return the block of the material, or the line that includes it."""
-    return f'*INCLUDE "{options.material.resolve()}"' if options.material else STEEL
+def pinned(pins: Sequence[Pin]) -> str:
+    """Return the supports of locating pins: the first one holds the blank, the second one against a turn about that."""
+    fixed = ["x y"]
+    if len(pins) > 1:
+        apart = np.abs(pins[1].place - pins[0].place)
+        fixed.append("y" if apart[0] > apart[1] else "x")
+    return "".join(PIN.format(words=pin.words, number=number, place=pair(pin.place), fixed=axes)
+                   for number, (pin, axes) in enumerate(zip(pins, fixed), 1))
 
 
-def material_in(path: Path | None) -> str:
-    """Return the name of the material of a file, or of the one that stands in for it."""
-    if path is None:
-        return "steel"
-    if not path.is_file():
-        raise Problem(f"{path}: no such file")
-    names = [block.name for block in read_blocks(path) if block.keyword == "material"]
-    if len(names) != 1:
-        raise Problem(f"{path}: expected one *MATERIAL, found {len(names)}")
-    return names[0]
+def sag(options: argparse.Namespace, blank: Blank) -> float | None:
+    """Return the deflection of a blank under its weight on two supports at the ends of its longer side, mm, None
+    without a density."""
+    density = set_material.density_of(options.material)
+    if density is None:
+        return None
+    span, stiffness = float(np.ptp(blank.box, axis=0).max()), set_material.stiffness_of(options.material)
+    return 5 * 12 * density * EARTH * span**4 / (384 * stiffness * options.thickness**2)
+
+
+def notes(options: argparse.Namespace, tools: ToolSet) -> list[tuple[str, str]]:
+    """Return lines of the report on what holds the blank, and its weight."""
+    lines = []
+    if "pad" in tools.surfaces:
+        area = tools.area["pad"]
+        force, by = ((tools.pad_force, "holds the floor by friction") if tools.pad_force else
+                     (PRESSURE * area, "by that pressure; what holds the floor is not estimated without the program"))
+        lines.append(("pad", f"{force:.3g} N, {force / area:.2g} MPa, {by}"))
+        lines += [("pin", f"in the hole {pin.words} at x y {pair(np.round(pin.place, 3))}: pierce the blank there")
+                  for pin in tools.pins]
+        if not tools.pins:
+            lines.append(("pin", "none, as the floor is not level or has no hole: pilot holes would locate the blank"))
+    if tools.closing:
+        deep = sag(options, tools.blank)
+        lines.append(("weight", "left out, as the material has no density: nothing lays the blank on the die" if deep is None else
+                      "the blank is laid on the die by a phase with gravity; on two supports at its ends it would sag by "
+                      f"up to {deep:.2g} mm"))
+    return lines

@@ -21,6 +21,7 @@ from dd3.tools.faces import spans
 from dd3.tools.joints import box_of, find_joints
 from dd3.tools.moved import placed, rotation
 from dd3.tools.offset import at_distance
+from dd3.tools.pad_force import Pin, Pull, pins
 from dd3.tools.rims import Rim, border_rims, find_rims, lengths, patches, wall
 from dd3.tools.set_blank import Blank
 from dd3.tools.surface import Surface, from_nodes, turned
@@ -48,8 +49,9 @@ DOWN = np.array([0.0, 0.0, -1.0])
 class ToolSet:
     """Surfaces by the names of the tools, with the highest point of the binder at z = 0, punch and holder at the start
     of their travels; these travels, the height by which the part was moved into the die, the least radius of the die's
-    shoulder and that of all faces of punch and die, mm; the blank, and the areas in plan of the tools over it, mm2; the
-    drawing ratio, the root of the area of the blank over that of the punch in plan, 0 with open ends or no holder; the
+    shoulder, that of all faces of punch and die and that of the punch, mm; force of the pad, N, 0 if it is not estimated;
+    what pulls at a floor, and the holes in which pins locate it; the blank, and the areas in plan of the tools over it,
+    mm2; the drawing ratio, the root of the area of the blank over that of the punch in plan, 0 with open ends or no holder; the
     largest distances of the faces of punch and die from the CAD, mm; lines of the report."""
 
     surfaces: dict[str, Surface] = field(default_factory=dict)
@@ -58,6 +60,10 @@ class ToolSet:
     height: float = 0.0
     shoulder: float = 0.0
     radius: float = 0.0
+    bend: float = 0.0
+    pad_force: float = 0.0
+    pulls: list[Pull] = field(default_factory=list)
+    pins: list[Pin] = field(default_factory=list)
     blank: Blank = field(default_factory=lambda: Blank(np.zeros((0, 2)), False))
     area: dict[str, float] = field(default_factory=dict)
     ratio: float = 0.0
@@ -139,8 +145,8 @@ def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
     result.shoulder = min(made_here, radius)
     if beside:
         result.lines.append(("shoulder", f"of the part, radius {radius:.3g} mm on the die"))
-    result.radius = min(result.shoulder, *(own_flange.least_radius(tool, range(len(tool.names)))
-                                           for tool in (punch, face.surface)))
+    result.bend, least = (own_flange.least_radius(tool, range(len(tool.names))) for tool in (punch, face.surface))
+    result.radius = min(result.shoulder, result.bend, least)
     inset = INSET * options.thickness
     low, high = box_of(face.surface.net)
     result.blank = face.blank.within(np.array([low[:2] + inset, high[:2] - inset]))
@@ -150,9 +156,11 @@ def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
     result.travel = float(over - report.extent(punch.net)[0][2])
     others = {"punch": (punch, result.travel - top), "die": (face.surface, -top)}
     floor = np.isin(face.surface.face, [label for label, role in enumerate(roles) if role == "floor"])
-    pad = floor.any() and one_sided(face)
+    result.pulls = pulls(face)
+    pad = floor.any() and one_sided(face, result.pulls)
     if pad:
         part = face.surface.select(floor)
+        result.pins = pins(options.holes, part, options)
         others["die"] = face.surface.select(~floor), -top
         others["pad"] = part, -float(report.extent(part.net)[1][2])
         result.lines.append(("pad", "under the floor, as the part is formed on one side of it only"))
@@ -194,14 +202,19 @@ def without_holder(punch: Surface, die: Surface, distance: dict[str, np.ndarray]
     return result
 
 
-def one_sided(face: Face) -> bool:
-    """Tell whether walls or flanges pull the sheet to one side."""
-    pull, total = np.zeros(3), 0.0
+def pulls(face: Face) -> list[Pull]:
+    """Return what pulls at the floor along the rims of the die."""
+    found = []
     for reach in face.reaches:
         length = np.linalg.norm(np.diff(reach.rim.points, axis=0), axis=1)
-        pull += length @ (reach.rim.out[1:] + reach.rim.out[:-1]) / 2
-        total += length.sum()
-    return bool(np.linalg.norm(pull) > ONE_SIDED * total)
+        found.append(Pull(length @ (reach.rim.out[1:] + reach.rim.out[:-1]) / 2, reach.own))
+    return found
+
+
+def one_sided(face: Face, pulled: list[Pull]) -> bool:
+    """Tell whether walls or flanges pull the sheet to one side."""
+    total = sum(np.linalg.norm(np.diff(reach.rim.points, axis=0), axis=1).sum() for reach in face.reaches)
+    return bool(np.linalg.norm(sum(pull.along for pull in pulled)) > ONE_SIDED * total)
 
 
 def with_walls(part: own_flange.Trimmed, face: Face, options: argparse.Namespace
