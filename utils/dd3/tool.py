@@ -17,7 +17,8 @@ import shlex
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -297,6 +298,16 @@ def check_set(parser: argparse.ArgumentParser, options: argparse.Namespace) -> N
         parser.error("--clearance takes a number that is not negative")
 
 
+@contextmanager
+def about(path: Path) -> Iterator[None]:
+    """Let each error name a file."""
+    try:
+        yield
+    except Problem as problem:
+        text = str(problem)
+        raise Problem(text if text.startswith(str(path)) else f"{path}: {text}") from problem
+
+
 def tools_of(gmsh: Any, options: argparse.Namespace, progress: Progress) -> tuple[tool_set.ToolSet, argparse.Namespace]:
     """Return the tools of a part and the options with all sizes; where the drawing ratio is too large, those with a
     smaller shoulder and margin, as far as these were not given."""
@@ -384,7 +395,7 @@ def make_set(options: argparse.Namespace, command: str) -> dict[str, report.Repo
     if reading.faults:
         sys.exit(2)
     progress = Progress(options.source.name)
-    with session() as gmsh:
+    with session() as gmsh, about(options.source):
         tools, options = tools_of(gmsh, options, progress)
     progress.end()
     reports = judge_set(tools, options)
