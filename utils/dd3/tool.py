@@ -23,6 +23,7 @@ from typing import Any
 
 import numpy as np
 
+from dd3 import places
 from dd3.command import new_parser
 from dd3.errors import Problem, run
 from dd3.gmsh_session import session
@@ -215,8 +216,8 @@ def command_line() -> argparse.ArgumentParser:
                        help="width of the die beyond the shoulder (as the blank needs)")
     whole.add_argument("--margin", type=float, metavar="mm",
                        help=f"of the blank beyond the part, or the shoulder ({tool_set.MARGIN:g} thicknesses)")
-    whole.add_argument("--program", type=Path, metavar="FILE",
-                       help="the program, which checks the input file (build/release/dd3imp, else dd3imp)")
+    whole.add_argument("--program", metavar="FILE",
+                       help="the program, which checks the input file (default: dd3imp as `dd3 info` shows it)")
     whole.add_argument("--side", choices=("punch", "die"), help="the tool that touches the faces (punch)")
     whole.add_argument("--material", type=Path, metavar="FILE", help="file with a *MATERIAL for the input file")
     return parser
@@ -364,8 +365,7 @@ def make_set(options: argparse.Namespace, command: str) -> dict[str, report.Repo
 
 def check_deck(result: report.Report, options: argparse.Namespace) -> None:
     """Add what the program says of the input file of a set to its report: memory, elements, time, warnings and errors."""
-    tried = (options.program,) if options.program else ("build/release/dd3imp", "dd3imp")
-    program = next((found for found in map(shutil.which, tried) if found), None)
+    program = shutil.which(options.program or places.program())
     if not program and options.program:
         result.errors.append(f"{options.program}: no such program")
     elif not program:

@@ -46,13 +46,14 @@ def arguments(step: str, words: Sequence[str]) -> argparse.Namespace:
     else:
         parser.add_argument("case", help="name of a case")
         parser.add_argument("--sets", nargs="*", help="sets that the display counts (default: all)")
-    parser.add_argument("--program", type=Path, default=Path("build/release/dd3imp"), help="the program dd3imp")
+    programs.add_program(parser)
     parser.add_argument("--cases", type=Path, default=Path("input_files/bending_study/cases.csv"),
                         help="table of the cases")
     parser.add_argument("--work", type=Path, default=Path("bending_study.out"), help="folder of all results")
     options = parser.parse_args(words)
-    for name in ("program", "cases", "work"):
-        setattr(options, name, getattr(options, name).resolve())
+    options.cases, options.work = options.cases.resolve(), options.work.resolve()
+    if step != "table":
+        options.program = programs.find_program(options.program)
     return options
 
 
@@ -112,7 +113,6 @@ def run_case(words: Sequence[str]) -> None:
     options = arguments("case", words)
     cases = read_cases(options.cases)
     row = row_of(cases, options)
-    programs.find_program(options.program)
     folder = options.work / options.case
     note = folder / NOTE
     call, deck = command(row, options, folder), digest(*deck_files(options))
