@@ -36,7 +36,10 @@ def missing(module: str) -> str:
     try:
         metadata.version("dd3imp")
     except metadata.PackageNotFoundError:  # not installed by pip
-        return f"{name} is missing: pip install {name}"
+        if sys.prefix != sys.base_prefix:
+            return f"{name} is missing: pip install {name}"
+        return (f"{name} is missing: python3 -m venv --system-site-packages dd3_env && dd3_env/bin/pip install {name}, "
+                "and source dd3_env/bin/activate before dd3")
     return f"{name} is missing: pip install " + (f'"dd3imp[{EXTRAS[name]}]"' if name in EXTRAS else name)
 
 

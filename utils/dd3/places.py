@@ -45,6 +45,6 @@ def execute() -> None:
 def become_program() -> None:
     """Replace this process by the program."""
     found = nearest(PROGRAM)
-    if not found or found.samefile(sys.argv[0]):
+    if not found or found.resolve() == Path(sys.argv[0]).resolve():  # this command itself
         raise Problem("the program dd3imp is not part of this package; build it (docs/manual.md, Installation)")
     os.execv(found, [str(found), *sys.argv[1:]])
