@@ -6,7 +6,7 @@
     dd3 study run --sets "fig3 fig6"     selected sets of cases
     dd3 study run -- --profile utils/dd3/study/slurm        options of snakemake after --, such as --dry-run
 
-Call it in the project's folder, or give --cases. All cores are used. After an interruption the same command continues;
+All cores are used. After an interruption the same command continues;
 finished cases are not repeated. `pip install "dd3imp[study]"` installs snakemake, the workflow engine.
 """
 
@@ -18,6 +18,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from dd3 import places
 from dd3.command import new_parser
 from dd3.errors import Problem, missing
 from dd3.programs import add_program, find_program, made_folder
@@ -39,7 +40,7 @@ def main(words: Sequence[str] | None = None) -> None:
     parser.add_argument("--cores", type=cores, default="all", help="runs at a time (default: the number of cores)")
     parser.add_argument("--work", type=Path, help="folder of the results (bending_study.out, bending_study_quick.out)")
     add_program(parser)
-    parser.add_argument("--cases", type=Path, help="table of the cases (input_files/bending_study/cases.csv)")
+    parser.add_argument("--cases", type=Path, help="table of the cases (bending_study/cases.csv of the examples)")
     parser.add_argument("options", nargs="*", metavar="-- OPTION", help="further options of snakemake")
     options = parser.parse_args(words)
     import fcntl
@@ -47,7 +48,7 @@ def main(words: Sequence[str] | None = None) -> None:
     if importlib.util.find_spec("snakemake") is None:
         raise Problem(missing("snakemake"))
     name = "quick" if options.quick else "cases"
-    cases = options.cases or Path(f"input_files/bending_study/{name}.csv")
+    cases = options.cases or places.examples() / "bending_study" / f"{name}.csv"
     work = made_folder(options.work or ("bending_study_quick.out" if options.quick else "bending_study.out"))
     settings = [f"program={program}", f"cases={cases.resolve()}", f"sets={options.sets}"]
     with (work / ".lock").open("w") as lock:
