@@ -174,7 +174,8 @@ def picture(files: Sequence[str | Path], program: str | Path, strain: float = 0.
     for part in axes:
         part.grid(alpha=0.3)
     handles, names = axes[0].get_legend_handles_labels()
-    figure.legend(handles, names, fontsize="small", loc="outside right upper", frameon=False)
+    # Beside the last axes; matplotlib 3.6 has no legends outside.
+    axes[-1].legend(handles, names, fontsize="small", loc="upper left", bbox_to_anchor=(1.02, 1.0), frameon=False)
     return figure
 
 
