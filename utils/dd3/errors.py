@@ -31,16 +31,18 @@ def check(condition: object, message: str) -> None:
 
 
 def missing(module: str) -> str:
-    """Return the message for a module that is not installed, with the command that installs it."""
-    name = IMPORTED.get(module.partition(".")[0], module.partition(".")[0])
+    """Return the message for a module that is not installed, with the command that installs it; a module within a
+    package is one of a later version."""
+    package, _, within = module.partition(".")
+    name, state = IMPORTED.get(package, package), "too old" if within else "missing"
     try:
         metadata.version("dd3imp")
     except metadata.PackageNotFoundError:  # not installed by pip
         if sys.prefix != sys.base_prefix:
-            return f"{name} is missing: pip install {name}"
-        return (f"{name} is missing: python3 -m venv --system-site-packages dd3_env && dd3_env/bin/pip install {name}, "
+            return f"{name} is {state}: pip install --upgrade {name}"
+        return (f"{name} is {state}: python3 -m venv --system-site-packages dd3_env && dd3_env/bin/pip install -U {name}, "
                 "and source dd3_env/bin/activate before dd3")
-    return f"{name} is missing: pip install " + (f'"dd3imp[{EXTRAS[name]}]"' if name in EXTRAS else name)
+    return f"{name} is {state}: pip install --upgrade " + (f'"dd3imp[{EXTRAS[name]}]"' if name in EXTRAS else name)
 
 
 def run(main: Callable[[], object]) -> None:
