@@ -58,8 +58,11 @@ def test_missing_package_is_one_sentence(hidden, words, tmp_path):
 
 def test_extra_of_installed_package(monkeypatch):
     monkeypatch.setattr(errors.metadata, "version", lambda name: "1.0")
+    for name in ("vtkmodules", "gmsh", "numpy"):
+        monkeypatch.delitem(sys.modules, name, raising=False)
     assert errors.missing("vtkmodules") == 'vtk is missing: pip install --upgrade "dd3imp[plot]"'
     assert errors.missing("gmsh") == 'gmsh is missing: pip install --upgrade "dd3imp[cad]"'
+    monkeypatch.setitem(sys.modules, "ezdxf", errors)
     assert errors.missing("ezdxf.xclip") == 'ezdxf is too old: pip install --upgrade "dd3imp[cad]"'
     assert errors.missing("numpy") == "numpy is missing: pip install --upgrade numpy"
 

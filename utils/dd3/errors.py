@@ -33,8 +33,8 @@ def check(condition: object, message: str) -> None:
 def missing(module: str) -> str:
     """Return the message for a module that is not installed, with the command that installs it; a module within a
     package is one of a later version."""
-    package, _, within = module.partition(".")
-    name, state = IMPORTED.get(package, package), "too old" if within else "missing"
+    package = module.partition(".")[0]
+    name, state = IMPORTED.get(package, package), "too old" if sys.modules.get(package) else "missing"
     try:
         metadata.version("dd3imp")
     except metadata.PackageNotFoundError:  # not installed by pip

