@@ -8,10 +8,11 @@ import platform
 import subprocess
 from collections.abc import Sequence
 from importlib import metadata
+from importlib.util import find_spec
 
 from dd3 import __version__, places
 from dd3.command import new_parser
-from dd3.errors import EXTRAS, missing
+from dd3.errors import EXTRAS
 
 NEEDED = ("numpy", "pandas", "matplotlib", "scipy", "h5py", "tqdm")
 
@@ -26,11 +27,11 @@ def version_of(program: str) -> str:
 
 
 def package(name: str) -> str:
-    """Return the version of a Python package, or how to install it."""
+    """Return the version of a Python package; that of a package of Debian may be unknown."""
     try:
         return metadata.version(name)
     except metadata.PackageNotFoundError:
-        return missing(name)
+        return "installed" if find_spec(name) else ""
 
 
 def main(words: Sequence[str] | None = None) -> None:

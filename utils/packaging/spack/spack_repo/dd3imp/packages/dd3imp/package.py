@@ -3,7 +3,7 @@
 
 import os
 
-from spack.package import depends_on, license, requires, variant, version
+from spack.package import default_args, depends_on, license, requires, variant, version, when
 from spack_repo.builtin.build_systems.cmake import CMakePackage, generator
 
 
@@ -28,14 +28,14 @@ class Dd3imp(CMakePackage):
     depends_on("metis@5: ~int64")
     depends_on("hdf5+fortran+hl~mpi")
     depends_on("mumps~mpi", when="+mumps")
-    with_utilities = {"type": "run", "when": "+utilities"}
-    depends_on("python@3.11:", **with_utilities)
-    depends_on("py-h5py", **with_utilities)
-    depends_on("py-matplotlib@3.6:", **with_utilities)
-    depends_on("py-numpy@1.24:", **with_utilities)
-    depends_on("py-pandas@1.5:", **with_utilities)
-    depends_on("py-scipy@1.10:", **with_utilities)
-    depends_on("py-tqdm", **with_utilities)
+    with when("+utilities"), default_args(type="run"):
+        depends_on("python@3.11:")
+        depends_on("py-h5py")
+        depends_on("py-matplotlib@3.6:")
+        depends_on("py-numpy@1.24:")
+        depends_on("py-pandas@1.5:")
+        depends_on("py-scipy@1.10:")
+        depends_on("py-tqdm")
 
     requires("%fortran=gcc@12:", msg="the options of the build are those of gfortran")
 
@@ -43,7 +43,7 @@ class Dd3imp(CMakePackage):
 
     def url_for_version(self, version):
         """Return the place of the source distribution, in the folder that DD3IMP_ARCHIVES names."""
-        return f"file://{os.environ.get('DD3IMP_ARCHIVES', os.getcwd())}/dd3imp-{version}.tar.gz"
+        return f"file://{os.environ.get('DD3IMP_ARCHIVES', '.')}/dd3imp-{version}.tar.gz"
 
     def cmake_args(self):
         """Return the options of the configuration."""
