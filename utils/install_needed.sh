@@ -46,17 +46,18 @@ install_packages() {
     "${missing[@]}" >/dev/null
 }
 
-# The package is installed such that changes of its sources need no further installation; the environment is created
-# again if its requirements have changed.
+# What the package needs is installed, with its commands, and the sources are put on the path of Python: their changes
+# need no further installation. The environment is created again if the requirements have changed.
 install_python() {
   local python=/usr/bin/python3 wanted
   [ -x "$python" ] || python=python3
-  wanted=$(cksum <utils/pyproject.toml)
+  wanted=$(cksum <pyproject.toml)
   [ "$(cat .venv/pyproject.cksum 2>/dev/null)" = "$wanted" ] && return 0
-  echo "== installing the Python package utils/dd3 into .venv"
+  echo "== installing what the Python package utils/dd3 needs into .venv"
   rm -rf .venv
   "$python" -m venv .venv
-  .venv/bin/pip install -q --disable-pip-version-check --editable "./utils[test]"
+  DD3_CLONE=1 .venv/bin/pip install -q --disable-pip-version-check ".[test]"
+  echo "$PWD/utils" >"$(.venv/bin/python3 -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/dd3.pth"
   echo "$wanted" >.venv/pyproject.cksum
 }
 

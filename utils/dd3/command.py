@@ -44,6 +44,8 @@ COMMANDS = {
         "figures": ("dd3.study.figures", "draw the figures from results.csv"),
         "report": ("dd3.study.tables", "rewrite the tables of the document from results.csv"),
     }),
+    "example": ("dd3.example", "copy an example, or list the examples"),
+    "info": ("dd3.info", "print what is installed: versions, program, examples, Python packages"),
 }
 USAGE = "dd3 plot force bending.out"
 

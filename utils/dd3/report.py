@@ -19,7 +19,8 @@ import argparse
 import base64
 import html
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +29,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from dd3 import forming_limit, springback, verdict
+from dd3 import forming_limit, rendering, springback, verdict
 from dd3.account import Account
 from dd3.bound import closed_skin
 from dd3.command import new_parser
@@ -69,6 +70,7 @@ class Report:
         self.path: Path = self.pictures / "report.html"
         self.whole = 2 ** len(options.mirror)  # number of images of the model
         self.parts: list[str] = []
+        self.undrawn: dict[str, str] = {}  # why a picture is not in the page
         self.limits: list[str] = []  # results of the forming limit diagram: by the curve, by the thinning
         self.splits: list[verdict.Item] = []
         self.sprung: float | None = None  # largest distance of the free shape from the drawn one, mm
@@ -90,6 +92,15 @@ class Report:
         """Return the element of a picture that has been written."""
         data = base64.b64encode((self.pictures / f"{name}.png").read_bytes()).decode()
         return f'<img alt="{html.escape(alt)}" src="data:image/png;base64,{data}">'
+
+    def drawn(self, draw: Callable[[], None], name: str, alt: str) -> str:
+        """Draw a picture of the sheet and return its element, or a text where the system cannot draw it."""
+        try:
+            draw()
+        except rendering.NoOpenGL as problem:
+            self.undrawn[name] = str(problem)
+            return f"<p>No picture: {html.escape(str(problem))}.</p>"
+        return self.image(name, alt)
 
     def figure(self, name: str, figure: Figure, alt: str) -> str:
         """Write a figure and return its element."""
@@ -299,8 +310,8 @@ def distance_map(report: Report, found: springback.Springback) -> str:
     options = report.sheet_options("distance", "--hide", "all")
     mesh = report.run.grid_of(found.step, found.free)
     mesh.point_data["shown"] = found.distance()
-    pictures.make_map(mesh, "distance from the drawn shape (mm)", options)
-    return report.image("distance", "distance from the drawn shape")
+    return report.drawn(lambda: pictures.make_map(mesh, "distance from the drawn shape (mm)", options), "distance",
+                        "distance from the drawn shape")
 
 
 def add_beads(report: Report) -> None:
@@ -344,6 +355,14 @@ def add_limit_diagram(report: Report) -> None:
 
 def zone_map(report: Report, zone: np.ndarray) -> str:
     """Draw the zones on the sheet and return the element."""
+    keys = " ".join(f'<span class="key" style="background:{colour}"></span>{name}&emsp;'
+                    for name, colour in zip(forming_limit.ZONES, forming_limit.COLOURS, strict=True))
+    return report.drawn(lambda: draw_zones(report, zone), "zones",
+                        "zones of the forming limit diagram on the sheet") + f"<p>{keys}</p>"
+
+
+def draw_zones(report: Report, zone: np.ndarray) -> None:
+    """Draw the zones on the sheet and write the picture."""
     options = report.sheet_options("zones", "--hide", "all")
     plotter = pictures.new_plotter(options, 1)
     plotter.subplot(0, 0)
@@ -358,9 +377,6 @@ def zone_map(report: Report, zone: np.ndarray) -> str:
     pictures.aim(plotter, pictures.box_of(report.run, [report.last], options, {}), options)
     plotter.screenshot(options.output)
     plotter.close()
-    keys = " ".join(f'<span class="key" style="background:{colour}"></span>{name}&emsp;'
-                    for name, colour in zip(forming_limit.ZONES, forming_limit.COLOURS, strict=True))
-    return report.image("zones", "zones of the forming limit diagram on the sheet") + f"<p>{keys}</p>"
 
 
 def section_planes(report: Report) -> list[str]:
@@ -422,8 +438,12 @@ def add_pictures(report: Report) -> None:
             ("Thinning", "thinning", "thinning", "thinning on the deformed sheet", ("--hide", "all")),
             ("Sheet and tools", "sheet", "equivalent_plastic_strain", "deformed sheet and tools", ())):
         options = report.sheet_options(name, "--field", field, *more)
-        pictures.make_picture(pictures.Run(report.folder, report.job), options)
-        report.add(title, report.image(name, alt))
+        report.add(title, report.drawn(partial(draw_sheet, report, options), name, alt))
+
+
+def draw_sheet(report: Report, options: argparse.Namespace) -> None:
+    """Draw the sheet with the options of `dd3 plot sheet` and write the picture."""
+    pictures.make_picture(pictures.Run(report.folder, report.job), options)
 
 
 def add_refinements(report: Report) -> None:
@@ -432,7 +452,7 @@ def add_refinements(report: Report) -> None:
     if not changes:
         return
     options = report.sheet_options("levels", "--field", "level", "--hide", "all")
-    pictures.make_picture(pictures.Run(report.folder, report.job), options)
+    picture = report.drawn(partial(draw_sheet, report, options), "levels", "levels of the elements at the end")
     heading = ("phase", "after increment", "travel, mm", "elements before", "after", "of levels 0, 1, ...",
                "forces out of balance, %", "next increment made again")
     rows = [(change["phase"], change["increment"], f"{change['travel']:.4g}", change["elements_before"],
@@ -440,8 +460,7 @@ def add_refinements(report: Report) -> None:
              "yes" if change["repeated"] else "no") for change in changes]
     content = "".join("<tr>" + "".join(f"<td>{html.escape(str(cell))}</td>" for cell in row) + "</tr>\n"
                       for row in rows)
-    report.add("Refinement", report.image("levels", "levels of the elements at the end")
-               + "<table><tr>" + "".join(f"<th>{name}</th>" for name in heading) + f"</tr>\n{content}</table>")
+    report.add("Refinement", picture + "<table><tr>" + "".join(f"<th>{name}</th>" for name in heading) + f"</tr>\n{content}</table>")
 
 
 def add_warnings(report: Report) -> None:
@@ -478,6 +497,9 @@ def write(options: argparse.Namespace) -> Report:
         step(report)
         report.parts.insert(0, report.parts.pop())
     report.path.write_text(page(report), encoding="utf-8")
+    if report.undrawn:
+        print(f"warning: {report.path}: without the pictures {', '.join(report.undrawn)}: "
+              f"{next(iter(report.undrawn.values()))}", file=sys.stderr)
     return report
 
 

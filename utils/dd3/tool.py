@@ -24,6 +24,7 @@ from typing import Any
 
 import numpy as np
 
+from dd3 import places
 from dd3.command import new_parser
 from dd3.errors import Problem, run
 from dd3.gmsh_session import session
@@ -235,8 +236,8 @@ def command_line() -> argparse.ArgumentParser:
     whole.add_argument("--beads", type=Path, nargs="?", const=ESTIMATE, metavar="RUN",
                        help="propose draw-beads by the draw-in of the estimate of the blank, or of a finished run of "
                             f"{DRAW}; the margin is then {beads.MARGIN:g} thicknesses")
-    whole.add_argument("--program", type=Path, metavar="FILE",
-                       help="the program, which checks the input file (build/release/dd3imp, else dd3imp)")
+    whole.add_argument("--program", metavar="FILE",
+                       help="the program, which checks the input file (default: dd3imp as `dd3 info` shows it)")
     whole.add_argument("--side", choices=("punch", "die"), help="the tool that touches the faces (punch)")
     whole.add_argument("--material", type=Path, metavar="FILE",
                        help="file with a *MATERIAL for the input file, or the name of one of the library, such as dc06 "
@@ -423,8 +424,8 @@ def make_set(options: argparse.Namespace, command: str) -> dict[str, report.Repo
 
 def program_of(options: argparse.Namespace) -> Path | None:
     """Return the program, None if there is none."""
-    tried = (options.program,) if options.program else ("build/release/dd3imp", "dd3imp")
-    return next((Path(found) for found in map(shutil.which, tried) if found), None)
+    found = shutil.which(options.program or places.program())
+    return Path(found) if found else None
 
 
 def beads_of(tools: tool_set.ToolSet, options: argparse.Namespace) -> beads.Beads:

@@ -6,12 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
-import dd3
+from dd3 import places
 from dd3.errors import Problem
 from dd3.programs import run_points
 from dd3.tools.blocks import Block, read_blocks
 
-LIBRARY = Path(dd3.__file__).resolve().parents[2] / "input_files" / "materials"
 # Density of the assumed steel, t/mm3.
 STEEL_DENSITY = 7.85e-9
 STEEL = f"""# Replace this by your material; dd3 identify makes one from measurements.
@@ -32,21 +31,26 @@ POINT = """
 """
 
 
+def library() -> Path:
+    """Return the folder of the materials that come with the program."""
+    return places.examples() / "materials"
+
+
 def found(path: Path | None) -> Path | None:
     """Return the file of a material: a path, or the name of a file of the library."""
     if path is None or path.is_file():
         return path
     if path.name != str(path):
         raise Problem(f"{path}: no such file")
-    file = LIBRARY / f"{path.name.removesuffix('.dat')}.dat"
+    file = library() / f"{path.name.removesuffix('.dat')}.dat"
     if not file.is_file():
-        raise Problem(f"{path}: no such file, and no material of the library {LIBRARY}\n  expected: {' '.join(names())}")
+        raise Problem(f"{path}: no such file, and no material of the library {library()}\n  expected: {' '.join(names())}")
     return file
 
 
 def names() -> list[str]:
     """Return the names of the library's files."""
-    return sorted(file.stem for file in LIBRARY.glob("*.dat"))
+    return sorted(file.stem for file in library().glob("*.dat"))
 
 
 def block_of(path: Path) -> Block:
@@ -88,7 +92,7 @@ def said(path: Path | None) -> tuple[str, str]:
     if path is not None:
         return "material", f"{name_of(path)}, of {path}"
     return "material", ("a mild steel is assumed, von Mises, Swift K=530 Y0=150 n=0.22: give yours by --material FILE, or "
-                        f"by its name in {LIBRARY}, such as dc06 (a mild steel), dp600 or aa6016_t4_yld2004")
+                        f"by its name in {library()}, such as dc06 (a mild steel), dp600 or aa6016_t4_yld2004")
 
 
 def warnings(path: Path | None) -> list[str]:
