@@ -41,6 +41,8 @@ from dd3.run import read_frame
 from dd3.section import Section, in_plane
 from dd3.sheet import AXES, Sheet, plane
 from dd3.tables import tools_in
+from dd3.viewer import page as interactive
+from dd3.viewer.scene import Scene
 
 STYLE = """body{font:16px/1.5 system-ui,sans-serif;color:#222;background:#f4f5f7;margin:0}
 main{max-width:1100px;margin:0 auto;padding:1em 1.5em}h1{margin:.4em 0 0}h2{margin:0 0 .5em;font-size:1.2em}
@@ -91,10 +93,14 @@ class Report:
         data = base64.b64encode((self.pictures / f"{name}.png").read_bytes()).decode()
         return f'<img alt="{html.escape(alt)}" src="data:image/png;base64,{data}">'
 
-    def figure(self, name: str, figure: Figure, alt: str) -> str:
+    def saved(self, name: str, figure: Figure, alt: str) -> str:
         """Write a figure and return its element."""
         save(figure, self.pictures / f"{name}.png", 130)
         return self.image(name, alt)
+
+    def figure(self, name: str, figure: Figure, alt: str) -> str:
+        """Write a figure of curves and return its element, whose curves answer to the mouse."""
+        return interactive.chart(name, figure, self.saved(name, figure, alt))
 
     def sheet_options(self, name: str, *more: str) -> argparse.Namespace:
         """Return the options of a picture of the sheet."""
@@ -332,7 +338,7 @@ def add_limit_diagram(report: Report) -> None:
     zone, report.limits = forming_limit.draw(axes, strains, limits, report.options.margin)
     critical = None if zone is None else int((zone == forming_limit.ZONES.index("critical")).sum())
     report.splits = verdict.splits(critical, report.limits, strains.largest_thinning() > limits.thinning)
-    content = report.figure("limit", figure, "forming limit diagram")
+    content = report.saved("limit", figure, "forming limit diagram")  # that of the 3D view answers to the mouse
     content += "" if zone is None else zone_map(report, zone)
     said = [*report.limits, *(f"left out: {item}" for item in account.left_out())]
     content += "".join(f"<p>{html.escape(line[:1].upper() + line[1:])}.</p>" for line in said)
@@ -416,6 +422,13 @@ def add_outline(report: Report) -> None:
     report.add("Outline and draw-in", report.figure("outline", figure, "outline before and after, draw-in"))
 
 
+def add_view(report: Report) -> None:
+    """Add the part in 3D."""
+    limits = forming_limit.find_limits(report.sheet, report.job, report.options)
+    scene = Scene(report.sheet, report.run, report.options.mirror, limits, report.options.margin)
+    report.add("Part in 3D", interactive.view(scene))
+
+
 def add_pictures(report: Report) -> None:
     """Add the thinning and the sheet between its tools."""
     for title, name, field, alt, more in (
@@ -458,14 +471,16 @@ def page(report: Report) -> str:
     images_of = f"; completed at the planes {', '.join(report.options.mirror)} = 0" if report.options.mirror else ""
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{title}</title><style>{STYLE}</style></head><body><main>
+<title>{title}</title><style>{STYLE}{interactive.own_file("viewer.css")}</style></head><body><main>
 <h1>{title}</h1><p>State: {report.run.state(report.last)}{images_of}.</p>
 {chr(10).join(report.parts)}
-</main></body></html>
+</main>
+{interactive.scripts()}
+</body></html>
 """
 
 
-STEPS = (add_pictures, add_limit_diagram, add_sections, add_outline, add_springback, add_refinements, add_phases,
+STEPS = (add_view, add_pictures, add_limit_diagram, add_sections, add_outline, add_springback, add_refinements, add_phases,
          add_beads, add_warnings, add_statistics, add_setup)
 
 
