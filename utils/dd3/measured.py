@@ -8,7 +8,8 @@ A table has a heading that names its columns, with units in brackets:
     section, length0 [mm], thickness [mm]            section: y=0; length0: along its upper face before the run
     section, along [mm], z [mm]                      along: in its plane, x of a section y=0
 
-Values over the same column may stand beside each other, and cells may be blank.
+Commas separate the columns, or semicolons or tabs, beside which decimal commas are read. Values over the same column
+may stand beside each other, and cells may be blank.
 """
 
 import re
@@ -18,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dd3.columns import Line, lines_of, separator_of
+from dd3.columns import Line, lines_of
 from dd3.errors import Problem
 
 LENGTH = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "µm": 1e-3, "um": 1e-3, "in": 25.4, "inch": 25.4}
@@ -31,6 +32,7 @@ UNITS = {"travel": LENGTH, "angle": ANGLE, "length0": LENGTH, "along": LENGTH, "
          "thinning": FRACTION, "z": LENGTH}
 HEADING = re.compile(r"\s*([^\[(]*?)\s*(?:[\[(]\s*([^\])]*?)\s*[\])])?\s*")
 LARGE = 1e9
+SAME = 1e-6  # mm or degrees by which a point may lie beyond the ends of a curve
 
 
 class Measured(NamedTuple):
@@ -42,6 +44,10 @@ class Measured(NamedTuple):
     section: str
     at: np.ndarray
     values: np.ndarray
+
+    def title(self) -> str:
+        """Return the name in pictures and tables."""
+        return self.name.replace("_", " ") + (f", section {self.section}" if self.section else "")
 
 
 class Difference(NamedTuple):
@@ -59,11 +65,10 @@ def read(path: str | Path, tools: Sequence[str]) -> list[Measured]:
     """Return the curves of a file; tools: those of the run, whose forces may be measured."""
     units: Mapping[str, Mapping[str, float]] = {**UNITS, **{f"{tool}_force": FORCE for tool in tools}}
     over = {**OVER, **{f"{tool}_force": "travel" for tool in tools}}
-    lines = lines_of(path)
-    separator = separator_of(lines)
-    filled = [line for line in lines if line.words(r"\S+")]
+    filled = [line for line in lines_of(path) if line.words(r"\S+")]
     if len(filled) < 2:
         raise Problem(f"{path}: expected a heading and rows of numbers")
+    separator = next((sign for sign in ";\t" if sign in filled[0].text), ",")
     names, factors = heading(filled[0], separator, units)
     values = [name for name in names if name in over]
     if not values:
@@ -123,8 +128,10 @@ def curves(file: str, name: str, over: str, rows: Sequence[Mapping[str, float | 
 
 def along_curve(measured: Measured, at: np.ndarray, values: np.ndarray) -> Difference:
     """Return the differences from a computed curve, linear between its points, over increasing `at`."""
-    inside = (measured.at >= at[0]) & (measured.at <= at[-1])
-    return difference(measured, inside, measured.values - np.interp(measured.at, at, values))
+    turn = at[0] + (measured.at - at[0] + SAME) % 360 - SAME  # of angles, in the turn that the curve begins with
+    places = turn if measured.over == "angle" else measured.at
+    inside = (places >= at[0] - SAME) & (places <= at[-1] + SAME)
+    return difference(measured, inside, measured.values - np.interp(places, at, values))
 
 
 def from_line(measured: Measured, line: np.ndarray) -> Difference:
@@ -144,3 +151,10 @@ def difference(measured: Measured, inside: np.ndarray, away: np.ndarray) -> Diff
     most = int(np.abs(away).argmax())
     return Difference(len(away), float(away[most]), float(at[most]), float(np.sqrt((away**2).mean())),
                       int((~inside).sum()))
+
+
+def shown_unit(measured: Measured) -> tuple[str, float]:
+    """Return the unit in which a curve is shown, and its size in that of the values."""
+    if measured.over == "travel":
+        return "kN", 1e3
+    return ("%", 0.01) if measured.name == "thinning" else ("mm", 1.0)
