@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The page of a made-up run in a browser: 3D view, hover, section, tools, forming limit diagram. Without a browser, or
-without playwright, it is skipped, which ctest tells; `utils/install_needed.sh --tests` installs both.
+without playwright, it is skipped, which ctest tells; `utils/install_needed.sh --browser` installs both.
 """
 
 import shutil

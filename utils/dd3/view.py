@@ -14,6 +14,8 @@ import webbrowser
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+
 from dd3 import report
 from dd3.command import new_parser
 from dd3.errors import Problem
@@ -21,7 +23,7 @@ from dd3.fields import AT
 from dd3.plot import sheet as pictures
 
 RESULTS = ("fields.vtkhdf", "history.csv", "status.csv", "run.json")
-EYE = 2.0  # distance of the camera over the diagonal of the sheet
+FIELD = "equivalent_plastic_strain"  # of the window
 
 
 def page_of(run: Path, words: Sequence[str]) -> Path:
@@ -43,25 +45,31 @@ def show_window(run: Path, options: argparse.Namespace) -> None:
     if not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise Problem("--window: there is no display; without --window the page opens in a browser")
     import pyvista as pv
-    chosen = pictures.arguments([str(run), *(["--field", options.field] if options.field else []),
-                                 "--mirror", *(options.mirror or [])][: None if options.mirror else -1])
-    one = pictures.Run(run)
-    chosen.field = chosen.field or "equivalent_plastic_strain"
+    one, chosen = pictures.Run(run), pictures.arguments([str(run), "--field", options.field or FIELD])
+    chosen.mirror = sorted(set(options.mirror))
     steps, tools = list(range(one.count)), pictures.find_tools(one, chosen)
     limits, box = pictures.limits_of(one, steps, chosen), pictures.box_of(one, steps, chosen, tools)
     pv.OFF_SCREEN = False
     plotter = pv.Plotter(title=f"{run}: {chosen.field}")
     plotter.set_background("white")
 
-    def show(value: float) -> None:
-        camera = plotter.camera_position
-        plotter.clear_actors()
-        pictures.draw(plotter, one, round(value), chosen, tools, limits, box)
-        if show.moved:  # type: ignore[attr-defined]
-            plotter.camera_position = camera
-        show.moved = True  # type: ignore[attr-defined]
+    label = one.mesh(one.last, chosen.field, chosen.cells)[1]
+    bar = pv.DataSetMapper(pv.PointSet(np.zeros((1, 3))))
+    bar.lookup_table = pv.LookupTable(chosen.colours, scalar_range=limits)
 
-    show.moved = False  # type: ignore[attr-defined]
+    shown: list[str] = []
+
+    def show(value: float) -> None:
+        place, scale, others = plotter.camera_position, plotter.camera.parallel_scale, set(plotter.actors)
+        pictures.draw(plotter, one, round(value), chosen, tools, limits, box)
+        added = [name for name in plotter.actors if name not in others]
+        for name in shown:
+            plotter.remove_actor(name)
+        shown[:] = added
+        plotter.camera_position, plotter.camera.parallel_scale = place, scale  # where it was moved to
+
+    plotter.add_scalar_bar(title=label, mapper=bar, vertical=True, fmt="%.3g", color="black", title_font_size=16)
+    pictures.aim(plotter, box, chosen)
     plotter.add_slider_widget(show, [0, one.last], value=one.step_at(options.at) if options.at else one.last,
                               title="step", fmt="%.0f", pointa=(0.3, 0.08), pointb=(0.7, 0.08))
     plotter.show()
@@ -72,7 +80,7 @@ def main(words: Sequence[str] | None = None) -> None:
     parser = new_parser("view", __doc__)
     parser.add_argument("run", metavar="RUN", type=Path, help="folder of results")
     parser.add_argument("--window", action="store_true", help="show the sheet in a window in place of the page")
-    parser.add_argument("--field", help="field of the window, as of `dd3 plot sheet` (equivalent_plastic_strain)")
+    parser.add_argument("--field", help=f"field of the window, as of `dd3 plot sheet` ({FIELD})")
     parser.add_argument("--at", metavar="PLACE", help=f"step of the window: {AT}")
     parser.add_argument("--no-browser", action="store_true", help="make the page if need be and print its path only")
     options, others = parser.parse_known_args(words)

@@ -96,27 +96,28 @@ class Watch:
 
     def draw(self) -> None:
         """Draw the sheet, or write the page, where there is a new step."""
-        if not (self.options.picture or self.options.page):
+        if not (self.options.picture or self.options.page) or (count := Fields(self.options.run).count) == self.steps:
             return
-        try:
-            count = Fields(self.options.run).count
-            if count == self.steps:
-                return
-            if self.options.page:
-                report.report_of([str(self.options.run), *self.words])
-            if self.options.picture:
-                pictures.make_picture(pictures.Run(self.options.run), pictures.arguments(
-                    [str(self.options.run), "--field", self.options.field, "--output", str(self.options.picture)]))
-            self.steps = count
-        except (Problem, OSError, KeyError, ValueError) as problem:  # a step that is being written
-            self.problem = str(problem)
+        run = str(self.options.run)
+        if self.options.page:
+            report.report_of([run, *self.words])
+        if self.options.picture:
+            pictures.make_picture(pictures.Run(run), pictures.arguments(
+                [run, "--field", self.options.field, "--output", str(self.options.picture)]))
+        self.steps = count
 
     def follow(self) -> dict[str, Any]:
         """Watch the run to its end and return its description."""
         while True:
             job = self.look()
-            self.draw()
-            if job is not None and job["outcome"]["state"] != "running":
+            ended = job is not None and job["outcome"]["state"] != "running"
+            try:
+                self.draw()
+            except (Problem, OSError, KeyError, ValueError):
+                if ended:
+                    raise
+                # The fields, or a step of them, are being written: they are drawn at the next look.
+            if job is not None and ended:
                 return job
             time.sleep(self.options.every)
 
