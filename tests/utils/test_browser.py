@@ -110,16 +110,51 @@ def test_section(page):
 
 
 def test_limit_link(page):
-    """Check that the diagram follows the step, and that all kinds of fields and maps are drawn without complaint."""
+    """Check that a point of the diagram under the mouse is marked on the sheet, and a node under the mouse in it."""
+    shown(page, 'v.state.step = 1; v.select("thinning"); v.look("iso")')
+    points, major = page.sheet.points(1), page.sheet.values(1, "major_strain_middle")[0]
+    page.locator("#limit_chart").scroll_into_view_if_needed()
+    place = page.evaluate("""() => {
+      const chart = library.Chart.getChart("limit_chart"), frame = chart.canvas.getBoundingClientRect();
+      const set = chart.data.datasets.findIndex(({ data }) => data.some((point) => point.elements === false && point.x > -0.021
+        && point.y > 0.29 && point.y < 0.31));
+      const at = chart.data.datasets[set].data.findIndex((point) => point.y > 0.29 && point.y < 0.31);
+      const { x, y } = chart.getDatasetMeta(set).data[at];
+      return [frame.left + x, frame.top + y];
+    }""")
+    page.mouse.move(*place)
+    page.wait_for_function("window.viewer.marked()")
+    marked = np.array(page.evaluate("window.viewer.marked()"))
+    nearest = np.linalg.norm(points - marked, axis=1).argmin()
+    assert np.linalg.norm(points[nearest] - marked) < 2e-3 and abs(major[nearest] - 0.3) < 0.01
+    page.locator("#view").scroll_into_view_if_needed()
+    x, y = page.evaluate("window.viewer.project([20.1, 6.1, -0.5])")
+    node = page.evaluate("([x, y]) => window.viewer.pick(x, y).node", [x, y])
+    page.mouse.move(x, y)
+    page.wait_for_function(f"document.getElementById('told').textContent.includes('node {node} at')")
+    found = page.evaluate('library.Chart.getChart("limit_chart").data.datasets[0].data')
+    assert len(found) == 1 and abs(found[0]["y"] - major[node - 1]) < 1e-4
+
+
+def test_all_fields(page):
+    """Check that all kinds of fields are drawn without complaint, that scales are round, and that the page is printed."""
     names = page.evaluate("window.viewer.scene.fields.map((field) => field.label)")
     assert len(names) > 20
     for i in range(len(names)):
         page.evaluate(f"window.viewer.state.field = {i}, window.viewer.show()")
     shown(page, 'v.state.step = 2; v.select("distance_normal"); document.getElementById("drawn").checked = true')
-    assert page.evaluate("window.viewer.state.shown.low < 0 && window.viewer.state.shown.high > 0")
     ticks = page.evaluate("window.viewer.state.shown.ticks")
-    step = ticks[1] - ticks[0]
-    assert all(abs(tick / step - round(tick / step)) < 1e-6 for tick in ticks), ticks
-    assert step / 10 ** np.floor(np.log10(step) + 1e-9) == pytest.approx(1) or round(
-        step / 10 ** np.floor(np.log10(step) + 1e-9), 6) in (2, 2.5, 5)
+    assert ticks[0] < 0 < ticks[-1] and any(abs(tick) < 1e-9 for tick in ticks)
+    step = (ticks[1] - ticks[0]) / 10 ** np.floor(np.log10(ticks[1] - ticks[0]) + 1e-9)
+    assert round(step, 6) in (1, 2, 2.5, 5), ticks
+    middle = page.evaluate("""() => {  // the colour at zero in the legend, white in the middle of the map
+      const { low, high } = window.viewer.state.shown, canvas = document.getElementById("legend");
+      const y = Math.round(62 + (canvas.height - 72) * high / (high - low));
+      return [...canvas.getContext("2d").getImageData(10, y, 1, 1).data];
+    }""")
+    assert min(middle[:3]) > 225, middle
+    page.emulate_media(media="print")
+    assert not page.locator(".controls").is_visible() and page.locator("#view canvas").first.is_visible()
+    assert page.pdf()[:5] == b"%PDF-"
+    page.emulate_media(media="screen")
     page.locator(".viewer").screenshot(path=page.folder / "viewer.png")

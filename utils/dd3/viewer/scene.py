@@ -200,10 +200,10 @@ class Scene:
         skin, apart = self.skin(self.sprung.step), self.sprung.free - self.sprung.drawn
         normals = upward_normals(self.sheet, self.sprung.step)
         for name, label, values in (
-                ("distance_normal", "deviation from the drawn shape along its normal, upwards (mm)",
+                ("distance_normal", "deviation along the normal of the drawn shape (mm)",
                  (apart * normals).sum(axis=1)), ("distance", DISTANCE, self.sprung.distance())):
             shown = [values[skin.nodes] if picture.free else None for picture in self.pictures]
-            yield {"name": name, "label": label, "help": "after the best fit", "elements": False, "percent": False,
+            yield {"name": name, "label": label, "help": "after the best fit; along the normal: positive towards the upper face", "elements": False, "percent": False,
                    **self.written(shown, False)}
 
     def tools(self) -> Iterator[dict[str, Any]]:

@@ -33,9 +33,10 @@ def skin_of(sheet: Sheet, step: int) -> Skin:
     corners = sheet.corners(step)
     between = {**middles(sheet.elements(step)), **sheet.bound(step)}
     faces, owners = outer_faces(corners)
-    inner = inner_faces(faces, sheet.bound(step)) if sheet.bound(step) else set()
-    kept = np.array([tuple(sorted(face)) not in inner for face in faces.tolist()])
-    faces, owners = faces[kept], owners[kept]
+    if sheet.bound(step):
+        inner = inner_faces(faces, sheet.bound(step))
+        kept = np.array([tuple(sorted(face)) not in inner for face in faces.tolist()])
+        faces, owners = faces[kept], owners[kept]
     sides = np.full(len(faces), RIM)
     for side, places in ((LOWER_SIDE, LOWER), (UPPER_SIDE, UPPER)):
         sides[(np.sort(faces, axis=1) == np.sort(corners[owners][:, places], axis=1)).all(axis=1)] = side

@@ -737,7 +737,8 @@ element ${found.element}`;
   };
   look("iso");
   await show();
-  return { scene, state, show, select, look, pick, read, project: (point) => {
+  // What a console or a test can call.
+  return { scene, state, show, select, look, pick, marked: () => mark.visible ? mark.position.toArray() : null, project: (point) => {
     const at = new Vector3(...point).project(camera), frame = renderer.domElement.getBoundingClientRect();
     return [frame.left + (at.x + 1) / 2 * frame.width, frame.top + (1 - at.y) / 2 * frame.height];
   } };
