@@ -119,7 +119,7 @@ function roundRange(low, high, count = 8) {
 
 const TOOL_COLOURS = [0x8d99a6, 0xa69b8d, 0x93a68d, 0xa08da6];
 const DIRECTIONS = { iso: [-0.9, -1.6, 0.9], front: [0, -1, 0], side: [-1, 0, 0], top: [0, -1e-4, 1], below: [-0.9, -1.6, -0.9] };
-const RIM = 2, UPPER = 1, MOST_POINTS = 20000; // sides of a skin; points of a chart
+const RIM = 2, UPPER = 1, MOST_POINTS = 5000; // sides of a skin; points of each kind in the diagram
 
 async function openViewer(scene) {
   const { BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial } = library;
@@ -508,16 +508,21 @@ async function openViewer(scene) {
   const roleField = (role, elements) => scene.fields.find((field) => field.role === role && field.elements === elements);
   async function limitDiagram(step) {
     const curve = scene.limit, sets = [], zones = roleField("zone", false), groups = new Map();
+    let thinned = false;
     for (const elements of [false, true]) {
       const fields = ["minor", "major", "zone"].map((role) => roleField(role, elements));
       const arrays = fields.map((field) => field?.values[state.step]);
       if (!arrays[0]) continue;
       const [minor, major, zone] = await Promise.all(arrays.map((array) => array && read(array)));
-      const skip = Math.max(1, Math.ceil(minor.length / MOST_POINTS)), critical = curve.minor.length ? 3 : Infinity;
+      if (!elements) state.strains = [minor, major];
+      // Of many points each k-th is drawn, apart for those above the curve.
+      const above = (i) => zone && zones.names[zone[i]] === "critical", counts = [0, 0], seen = [0, 0];
+      for (let i = 0; i < minor.length; i++) counts[+above(i)]++;
+      const skip = counts.map((count) => Math.max(1, Math.ceil(count / MOST_POINTS)));
+      thinned ||= Math.max(...skip) > 1;
       for (let i = 0; i < minor.length; i++) {
-        const of = zone ? zone[i] : 0;
-        if (i % skip && !(of >= critical)) continue;
-        const name = `${elements} ${of}`;
+        const kind = +above(i), of = zone ? zone[i] : 0, name = `${elements} ${of}`;
+        if (seen[kind]++ % skip[kind]) continue;
         if (!groups.has(name)) groups.set(name, { elements, of, data: [] });
         groups.get(name).data.push({ x: minor[i], y: major[i], i, elements });
       }
@@ -525,7 +530,7 @@ async function openViewer(scene) {
     for (const { elements, of, data } of [...groups.values()].sort((one, other) => one.of - other.of)) {
       const colour = zones ? zones.colours[of] : "#666666", name = zones ? zones.names[of] : elements ? "elements" : "nodes";
       sets.push({ label: (zones && elements ? "_" : "") + name, data, borderColor: colour, backgroundColor: colour,
-        pointStyle: elements ? "crossRot" : "circle", pointRadius: elements ? 3 : 2, pointHitRadius: 4 });
+        pointStyle: elements ? "rectRot" : "circle", pointRadius: 2, pointBorderWidth: 0, pointHitRadius: 4 });
     }
     if (curve.minor.length) {
       const low = Math.min(-0.3, ...sets.map((set) => set.data.reduce((a, p) => Math.min(a, p.x), 0)));
@@ -533,14 +538,13 @@ async function openViewer(scene) {
       const points = (shift) => curve.minor.map((x, i) => ({ x, y: curve.major[i] - shift })).filter(({ x }) => x >= low && x <= high);
       sets.unshift(lineSet(curve.label, "#222222", points(0), 1.6), { ...lineSet("marginal", "#222222", points(curve.margin), 1), borderDash: [5, 4] });
     }
-    sets.unshift({ label: "_marked", data: limitMark ? [limitMark] : [], pointRadius: 7, pointStyle: "circle",
+    sets.unshift({ label: "_marked", data: [], pointRadius: 7, pointStyle: "circle",
       borderColor: "#cc0066", backgroundColor: "transparent", borderWidth: 2 });
     limitChart.data.datasets = sets;
     limitChart.update();
-    element("limit_help").textContent = `Dots: nodes; crosses: elements; logarithmic strains at the middle of the sheet.${
+    element("limit_help").textContent = `Dots: nodes; diamonds: elements${thinned ? ", a part of them" : ""}; logarithmic strains at the middle of the sheet.${
       curve.minor.length ? "" : ` No curve: ${curve.label}.`} A point under the mouse is marked on the sheet, and the other way round.`;
   }
-  let limitMark = null;
   const limitChart = newChart(element("limit_chart"), "minor strain (logarithmic)", "major strain (logarithmic)", {
     tell: ({ raw, dataset }) => "i" in raw ? `${raw.elements ? "element" : "node"} ${numberOf(raw)}: ${round(raw.x)}, ${round(raw.y)}`
       : `${named(dataset)}${round(raw.x)}, ${round(raw.y)}`,
@@ -592,7 +596,7 @@ async function openViewer(scene) {
   function tell(event) {
     const found = event.buttons ? null : pick(event.clientX, event.clientY), told = element("told"), frame = view.getBoundingClientRect();
     told.style.display = found ? "block" : "none";
-    limitMark = null;
+    let limitMark = null;
     if (found) {
       const field = scene.fields[state.field];
       told.textContent = `${field.label.replace(/ \([^()]*\)$/, "")}: ${found.value === null ? "not known" : valueText(field, found.value)}
@@ -600,8 +604,7 @@ node ${found.node} at (${found.position.map((value) => value.toFixed(2)).join(",
 element ${found.element}`;
       told.style.left = `${Math.min(event.clientX - frame.left + 14, frame.width - told.offsetWidth - 4)}px`;
       told.style.top = `${Math.min(event.clientY - frame.top + 14, frame.height - told.offsetHeight - 4)}px`;
-      const key = ({ data }) => data.find((point) => point.i === found.place && point.elements === false);
-      limitMark = limitChart.data.datasets.slice(1).map(key).find(Boolean) ?? null;
+      limitMark = state.strains && { x: state.strains[0][found.place], y: state.strains[1][found.place] };
     }
     limitChart.data.datasets[0].data = limitMark ? [limitMark] : [];
     limitChart.update("none");
