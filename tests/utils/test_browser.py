@@ -116,9 +116,9 @@ def test_limit_link(page):
     page.locator("#limit_chart").scroll_into_view_if_needed()
     place = page.evaluate("""() => {
       const chart = library.Chart.getChart("limit_chart"), frame = chart.canvas.getBoundingClientRect();
-      const set = chart.data.datasets.findIndex(({ data }) => data.some((point) => point.elements === false && point.x > -0.021
-        && point.y > 0.29 && point.y < 0.31));
-      const at = chart.data.datasets[set].data.findIndex((point) => point.y > 0.29 && point.y < 0.31);
+      const wanted = (point) => point.elements === false && point.y > 0.29 && point.y < 0.31;
+      const set = chart.data.datasets.findIndex(({ data }) => data.some(wanted));
+      const at = chart.data.datasets[set].data.findIndex(wanted);
       const { x, y } = chart.getDatasetMeta(set).data[at];
       return [frame.left + x, frame.top + y];
     }""")
@@ -137,7 +137,7 @@ def test_limit_link(page):
 
 
 def test_all_fields(page):
-    """Check that all kinds of fields are drawn without complaint, that scales are round, and that the page is printed."""
+    """Check that all fields are drawn without complaint, that scales are round, and that the page is printed."""
     names = page.evaluate("window.viewer.scene.fields.map((field) => field.label)")
     assert len(names) > 20
     for i in range(len(names)):

@@ -2,6 +2,7 @@
 """Measured curves: their tables, their differences from the computed ones, and their place on the page of a run."""
 
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -27,9 +28,11 @@ def test_tables(tmp_path):
 
 @pytest.mark.parametrize("text, said", (
     ("travel [mm], force [kN]\n1, 2\n", "no column 'force'"), ("travel [mm], force [kN]\n1, 2\n", "punch_force"),
-    ("travel [mm], punch_force\n1, 2\n", "'punch_force' has no unit"), ("travel [s], punch_force [N]\n1, 2\n", "the unit 's'"),
+    ("travel [mm], punch_force\n1, 2\n", "'punch_force' has no unit"),
+    ("travel [s], punch_force [N]\n1, 2\n", "the unit 's'"),
     ("angle [deg], punch_force [N]\n1, 2\n", "without the column travel"),
-    ("length0 [mm], thickness [mm]\n1, 1\n", "without the column section"), ("travel [mm]\n1\n", "no column of measured"),
+    ("length0 [mm], thickness [mm]\n1, 1\n", "without the column section"),
+    ("travel [mm]\n1\n", "no column of measured"),
     ("travel [mm], travel [mm], punch_force [N]\n", "expected a heading and rows"),
     ("travel [mm], travel [mm], punch_force [N]\n1, 1, 2\n", "a second column 'travel'"),
     ("travel [mm], punch_force [N]\n1, two\n", ":2: error: 'two' is not a number"),
@@ -45,11 +48,11 @@ def test_refused(tmp_path, text, said):
 
 
 def test_differences():
-    """Check largest and root mean square differences, points beyond, angles in another turn, and distances from a line."""
+    """Check largest and root mean square differences, points beyond, angles in another turn, distances from a line."""
     at, values = np.array([0.0, 10, 20]), np.array([0.0, 10, 0])
-    found = along_curve(Measured("a", "thickness", "length0", "y=0", np.array([5.0, 12, 25]), np.array([6.0, 6, 1])), at,
-                        values)
-    assert found.count == 2 and found.beyond == 1 and found.largest == -2 and found.where == 12
+    found = along_curve(Measured("a", "thickness", "length0", "y=0", np.array([5.0, 12, 25]), np.array([6.0, 6, 1])),
+                        at, values)
+    assert found.points == 2 and found.beyond == 1 and found.largest == -2 and found.where == 12
     assert abs(found.rms - np.sqrt((1 + 4) / 2)) < 1e-12
     turned = along_curve(Measured("a", "draw_in", "angle", "", np.array([-355.0]), np.array([5.5])), at, values)
     assert abs(turned.largest - 0.5) < 1e-9 and turned.beyond == 0
@@ -67,16 +70,17 @@ def test_on_the_page(tmp_path):
     x = np.linspace(5, 35, 7)
     rows = [f"y=2,{length},{1 - length / 200 + 0.01},," for length in x] + [
         f"y=2,,,{along},{1 - 6 * (along / 40) ** 2}" for along in x]
-    (tmp_path / "shape.csv").write_text("section,length0 [mm],thickness [mm],along [mm],z [mm]\n" + "\n".join(rows) + "\n")
+    (tmp_path / "shape.csv").write_text("\n".join(["section,length0 [mm],thickness [mm],along [mm],z [mm]", *rows]))
     page = call("report", run, "--mirror", "x", "y", "--measured", tmp_path / "force.csv", "--measured",
                 tmp_path / "shape.csv", "--output", tmp_path / "report").strip()
-    text = open(page, encoding="utf-8").read()
+    text = Path(page).read_text(encoding="utf-8")
     section = re.search("<h2>Measured curves</h2>(.*?)</section>", text, re.DOTALL)[1]
     force = re.search(r"punch force \(force.csv\)</th><td>(.*?)</td>", section)[1]
-    assert force == "2 points; largest difference +0.5 kN at travel 1 mm, rms 0.354 kN"  # of 10 kN at 2 mm, the whole part
+    assert force == "2 points; largest difference +0.5 kN at travel 1 mm, rms 0.354 kN"  # of 10 kN at 2 mm
     thickness = re.search(r"thickness, section y=2 \(shape.csv\)</th><td>(.*?)</td>", section)[1]
     largest, rms = map(float, re.search(r"difference \+([0-9.]+) mm .*rms ([0-9.]+) mm", thickness).groups())
-    assert 0.0095 < largest < 0.0101 and 0.008 < rms < 0.0101, thickness  # lengths are those of the first step, slightly bent
+    # Lengths are those of the first step, which is bent.
+    assert 0.0095 < largest < 0.0101 and 0.008 < rms < 0.0101, thickness
     away = float(re.search(r"z, section y=2 .*?largest difference \+([0-9.e-]+) mm", section)[1])
     assert away < 0.01, away
     (tmp_path / "bad.csv").write_text("travel [mm], die_force [kN]\n0, 0\n")

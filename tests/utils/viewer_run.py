@@ -41,7 +41,8 @@ def viewed_run(folder):
     one, x = np.ones(len(start)), start[:, 0]
     fields = {name: (values, values) for name, values in {
         "thickness": 1 - x / 200, "thinning": x / 200 - 0.05, "draw_in": 0 * x, "equivalent_plastic_strain": x / 100,
-        "major_strain_middle": x / 100, "minor_strain_middle": -0.02 * one, "contact_pressure": np.where(x < 9, 50.0, 0),
+        "major_strain_middle": x / 100, "minor_strain_middle": -0.02 * one,
+        "contact_pressure": np.where(x < 9, 50.0, 0),
     }.items()}
     touched = ((x < 9) & (start[:, 2] > 0.5)).astype(np.int32)
     fields["contact_tool"] = touched, 0 * touched

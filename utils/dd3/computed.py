@@ -15,8 +15,8 @@ from dd3.sheet import AXES, Sheet, plane
 
 def curve(measured: Measured, sheet: Sheet, history: pd.DataFrame, mirror: Sequence[str]
           ) -> tuple[np.ndarray, np.ndarray]:
-    """Return what is computed of a measured curve: what it is over, and the values, in mm, N, degrees, fractions; at the
-    end of the run, forces of the whole part."""
+    """Return what is computed of a measured curve: what it is over, and the values, in mm, N, degrees, fractions; at
+    the end of the run, forces of the whole part."""
     if measured.over == "travel":
         return force(history, measured.name.removesuffix("_force"), mirror)
     if measured.over == "angle":
@@ -32,8 +32,8 @@ def curve(measured: Measured, sheet: Sheet, history: pd.DataFrame, mirror: Seque
 
 
 def force(history: pd.DataFrame, tool: str, mirror: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the travel, and the force of a tool on the whole part, N, while the travel grows: not the closing before it
-    and the release after it."""
+    """Return the travel, and the force of a tool on the whole part, N, while the travel grows: not the closing before
+    it and the release after it."""
     left = [axis not in mirror for axis in AXES]  # the others are zero on the whole part
     size = 2 ** len(mirror) * np.linalg.norm(vector(history, tool, "f")[:, left], axis=1)
     travel = history["travel"].to_numpy(float)

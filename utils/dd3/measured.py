@@ -27,7 +27,8 @@ FORCE = {"n": 1.0, "kn": 1e3, "mn": 1e6, "lbf": 4.448222}
 ANGLE = {"degrees": 1.0, "deg": 1.0, "°": 1.0, "rad": 57.295779513}
 FRACTION = {"": 1.0, "-": 1.0, "1": 1.0, "%": 0.01}
 SECTION = "section"
-OVER = {"draw_in": "angle", "thickness": "length0", "thinning": "length0", "z": "along"}  # what a column is measured over
+# What a column is measured over.
+OVER = {"draw_in": "angle", "thickness": "length0", "thinning": "length0", "z": "along"}
 UNITS = {"travel": LENGTH, "angle": ANGLE, "length0": LENGTH, "along": LENGTH, "draw_in": LENGTH, "thickness": LENGTH,
          "thinning": FRACTION, "z": LENGTH}
 HEADING = re.compile(r"\s*([^\[(]*?)\s*(?:[\[(]\s*([^\])]*?)\s*[\])])?\s*")
@@ -54,7 +55,7 @@ class Difference(NamedTuple):
     """Measured less computed values: number of points, the largest in size and where, root of the mean square; points
     beyond the computed curve, which are left out."""
 
-    count: int
+    points: int
     largest: float
     where: float
     rms: float
@@ -146,7 +147,8 @@ def from_line(measured: Measured, line: np.ndarray) -> Difference:
 def difference(measured: Measured, inside: np.ndarray, away: np.ndarray) -> Difference:
     """Return the differences of the points inside."""
     if not inside.any():
-        raise Problem(f"{measured.file}: all points of {measured.name} lie beyond the computed curve over {measured.over}")
+        raise Problem(f"{measured.file}: all points of {measured.name} lie beyond the computed curve over "
+                      f"{measured.over}")
     away, at = away[inside], measured.at[inside]
     most = int(np.abs(away).argmax())
     return Difference(len(away), float(away[most]), float(at[most]), float(np.sqrt((away**2).mean())),

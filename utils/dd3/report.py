@@ -8,11 +8,12 @@
 
 The page is one file, which a browser shows without a network: the part in 3D with all fields at all steps, its tools,
 sections and forming limit diagram, and curves that tell their values under the mouse. It begins with the verdict:
-whether the sheet is formed to the tools, its waves under the holder, splits, thinning, springback; --verdict prints it and ends with exit code 1 if something is not good. Then come the thinning,
-the deformed sheet between its tools, the forming limit diagram, thickness along sections, the outline before and
-after, the springback of a sheet that was released (its distance from the drawn shape, sections, angles, twist), the
-refinements and the final mesh where elements were divided in the run, for each phase the tools' motions and forces,
-what limited its increments and what warned, the statistics of the run, and the set-up. --mirror completes a model at
+whether the sheet is formed to the tools, its waves under the holder, splits, thinning, springback; --verdict prints it
+and ends with exit code 1 if something is not good. Then come the thinning, the deformed sheet between its tools, the
+forming limit diagram, thickness along sections, the outline before and after, the springback of a sheet that was
+released (its distance from the drawn shape, sections, angles, twist), measured curves, the refinements and the final
+mesh where elements were divided in the run, for each phase the tools' motions and forces, what limited its increments
+and what warned, the statistics of the run, and the set-up. --mirror completes a model at
 its planes of symmetry; forces are multiplied accordingly. Forming limit curve and thinning limit are those of `dd3
 fld`; without a curve for the material it is not judged. The strains are those at the middle of the sheet.
 """
@@ -436,17 +437,18 @@ def add_measured(report: Report) -> None:
         unit, scale = measured.shown_unit(measure)
         over = "degrees" if measure.over == "angle" else "mm"
         place.plot(at, values / scale, "-", color="#0072b2", label="computed")
-        place.plot(measure.at, measure.values / scale, "o", markersize=3, color="#d55e00", label=f"measured, {measure.file}")
+        place.plot(measure.at, measure.values / scale, "o", markersize=3, color="#d55e00",
+                   label=f"measured, {measure.file}")
         place.set(xlabel=f"{measure.over} ({over})", ylabel=f"{measure.title()} ({unit})")
         place.grid(True, color="0.9")
         place.legend(frameon=False)
         beyond = f"; {found.beyond} points beyond the computed curve are left out" if found.beyond else ""
-        rows.append((f"{measure.title()} ({measure.file})", f"{found.count} points; largest difference "
+        rows.append((f"{measure.title()} ({measure.file})", f"{found.points} points; largest difference "
                      f"{found.largest / scale:+.3g} {unit} at {measure.over} {found.where:.4g} {over}, rms "
                      f"{found.rms / scale:.3g} {unit}{beyond}"))
     report.add("Measured curves", report.figure("measured", figure, "measured and computed curves")
-               + "<p>Differences: measured less computed values; of the shape of a section distances from it, along its "
-                 "upper face.</p>" + table(rows))
+               + "<p>Differences: measured less computed values; of the shape of a section distances from it, along "
+                 "its upper face.</p>" + table(rows))
 
 
 def add_view(report: Report) -> None:
@@ -507,8 +509,8 @@ def page(report: Report) -> str:
 """
 
 
-STEPS = (add_view, add_pictures, add_limit_diagram, add_sections, add_outline, add_springback, add_measured, add_refinements, add_phases,
-         add_beads, add_warnings, add_statistics, add_setup)
+STEPS = (add_view, add_pictures, add_limit_diagram, add_sections, add_outline, add_springback, add_measured,
+         add_refinements, add_phases, add_beads, add_warnings, add_statistics, add_setup)
 
 
 def write(options: argparse.Namespace) -> Report:

@@ -13,6 +13,7 @@ import os
 import webbrowser
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -50,13 +51,11 @@ def show_window(run: Path, options: argparse.Namespace) -> None:
     steps, tools = list(range(one.count)), pictures.find_tools(one, chosen)
     limits, box = pictures.limits_of(one, steps, chosen), pictures.box_of(one, steps, chosen, tools)
     pv.OFF_SCREEN = False
-    plotter = pv.Plotter(title=f"{run}: {chosen.field}")
+    plotter: Any = pv.Plotter(title=f"{run}: {chosen.field}")
     plotter.set_background("white")
-
     label = one.mesh(one.last, chosen.field, chosen.cells)[1]
     bar = pv.DataSetMapper(pv.PointSet(np.zeros((1, 3))))
     bar.lookup_table = pv.LookupTable(chosen.colours, scalar_range=limits)
-
     shown: list[str] = []
 
     def show(value: float) -> None:

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from dd3.viewer.scene import Scene
 
 FOLDER = Path(__file__).parent
+SCRIPTS = ("library.min.js", "charts.js", "data.js", "colours.js", "limit_diagram.js", "viewer.js")
 DIGITS = 5  # of the numbers of curves
 
 
@@ -24,20 +25,23 @@ def own_file(name: str) -> str:
 
 def data(name: str, content: Any) -> str:
     """Return the element that holds data of a page."""
-    return f'<script type="application/json" id="{name}">{json.dumps(content).replace("</", "<" + chr(92) + "/")}</script>'
+    text = json.dumps(content).replace("</", "<\\/")
+    return f'<script type="application/json" id="{name}">{text}</script>'
 
 
 def view(scene: Scene) -> str:
     """Return the element of the 3D view with its data."""
     description = scene.description()
-    left_out = description["left_out"]
-    said = f"<p>{left_out} of {scene.sheet.count} steps of the run are left out, for the size of the page.</p>" if left_out else ""
+    left_out, said = description["left_out"], ""
+    if left_out:
+        said = f"<p>{left_out} of {scene.sheet.count} steps of the run are left out, for the size of the page.</p>"
     return own_file("viewer.html") + said + data("scene", description) + "\n".join(scene.arrays.elements)
 
 
 def scripts() -> str:
     """Return the scripts, which stand at the end of the page, and the licences of those that are not our own."""
-    return f"<!--\n{own_file('library.LICENSES.txt')}-->\n<script>{own_file('library.min.js')}</script>\n<script>{own_file('viewer.js')}</script>"
+    texts = [own_file(name) for name in SCRIPTS]
+    return "\n".join([f"<!--\n{own_file('library.LICENSES.txt')}-->", *(f"<script>{text}</script>" for text in texts)])
 
 
 def chart(name: str, figure: Figure, picture: str) -> str:

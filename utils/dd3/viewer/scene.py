@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the 3D view of a page shows: the sheet at its steps with all fields, its tools, the forming limit curve, places.
 
-viewer.js reads the description that `scene_of` returns. Its steps are those of fields.vtkhdf; after a release follows the
-free shape once more, moved to the best fit with the drawn one.
+The scripts of the page read the description of a scene. Its steps are those of fields.vtkhdf; after a release follows
+the free shape once more, moved to the best fit with the drawn one.
 """
 
 import argparse
@@ -29,12 +29,16 @@ STATUS = ("no contact", "stick", "slip")
 ZONES = ("no warning", "thickens, may wrinkle", "thinning of 80 to 100 % of the limit", "thinning above the limit")
 ZONE_COLOURS = ("#e3e7eb", "#0072b2", "#f0e442", "#d55e00")
 NEAR = 0.8  # of the limit of thinning
+PLACES = (("punches", "off_tools", "farthest from the tools at the end of the path of {}"),
+          ("punches", "off_walls", "farthest from the tools in walls"),
+          ("punches", "path_left", "path left of {} is shortest"), ("holders", "wave", "highest wave under {}"),
+          ("holders", "beyond", "rim farthest beyond {}"))
 DISTANCE = "distance from the drawn shape (mm)"
 
 
 class Picture(NamedTuple):
-    """A step of the view: its step in the fields, its name, the places of its nodes; `free`: it is the free shape in the
-    mesh of the drawn one, whose nodes are `nodes` of the last mesh."""
+    """A step of the view: its step in the fields, its name, the places of its nodes; `free`: it is the free shape in
+    the mesh of the drawn one, whose nodes are `nodes` of the last mesh."""
 
     step: int
     mesh: int  # step whose mesh it has
@@ -96,7 +100,8 @@ class Scene:
         job = sheet.file["job"]
         if "phase" in job:
             number = int(job["phase"][picture.step])
-        phase = sheet.phases[number - 1] if 0 < number <= len(sheet.phases) else {"name": "", "tools": []}
+        known = 0 < number <= len(sheet.phases)
+        phase: dict[str, Any] = sheet.phases[number - 1] if known else {"name": "", "tools": []}
         placed = {name: np.block([[place.axes, np.zeros((3, 1))], [place.displacement, 1.0]]).ravel().tolist()
                   for name, place in self.run.tool_placements(picture.step).items()}
         return {"name": picture.name, "mesh": sheet.mesh_number(picture.mesh), "phase": phase["name"],
@@ -150,7 +155,8 @@ class Scene:
         there = [part for part in values if part is not None]
         add = self.arrays.add_whole if whole else self.arrays.add
         return {"values": [None if part is None else add(part) for part in values],
-                "low": float(min(np.nanmin(part) for part in there)), "high": float(max(np.nanmax(part) for part in there))}
+                "low": float(min(np.nanmin(part) for part in there)),
+                "high": float(max(np.nanmax(part) for part in there))}
 
     def limit_fields(self) -> Iterator[dict[str, Any]]:
         """Return the strains and zones of the forming limit diagram, and the zones of thinning and thickening, at nodes
@@ -161,17 +167,18 @@ class Scene:
             for role in ("minor", "major"):
                 yield {"name": f"limit_{role}", "label": f"{role} strain, middle, as in the forming limit diagram",
                        "help": "", "elements": at_cells, "percent": True, "role": role,
-                       **self.written([part and getattr(part, role) for part in parts], False)}
+                       **self.written([None if part is None else getattr(part, role) for part in parts], False)}
             if self.limits.curve:
                 curve, margin = self.limits.curve, self.margin
-                zones = [part and curve.zones(part.major, part.minor, margin) for part in parts]
+                zones = [None if part is None else curve.zones(part.major, part.minor, margin) for part in parts]
                 yield {"name": "limit_zone", "label": "zone of the forming limit diagram", "help": "", "role": "zone",
                        "elements": at_cells, **named(forming_limit.ZONES, forming_limit.COLOURS),
                        **self.written(zones, True)}
             yield {"name": "thinning_zone", "label": "zones of thinning and wrinkling", "elements": at_cells,
                    "help": f"limit of thinning {100 * self.limits.thinning:g} %; it thickens where the major strain is "
                            "smaller than minus the minor one",
-                   **named(ZONES, ZONE_COLOURS), **self.written([part and self.zones(part) for part in parts], True)}
+                   **named(ZONES, ZONE_COLOURS),
+                   **self.written([None if part is None else self.zones(part) for part in parts], True)}
 
     def on_skin(self, picture: Picture, strains: forming_limit.Strains, at_cells: bool) -> forming_limit.Strains | None:
         """Return strains at the nodes or elements of a skin; None for elements of another mesh."""
@@ -203,7 +210,8 @@ class Scene:
                 ("distance_normal", "deviation along the normal of the drawn shape (mm)",
                  (apart * normals).sum(axis=1)), ("distance", DISTANCE, self.sprung.distance())):
             shown = [values[skin.nodes] if picture.free else None for picture in self.pictures]
-            yield {"name": name, "label": label, "help": "after the best fit; along the normal: positive towards the upper face", "elements": False, "percent": False,
+            yield {"name": name, "label": label, "elements": False, "percent": False,
+                   "help": "after the best fit; along the normal: positive towards the upper face",
                    **self.written(shown, False)}
 
     def tools(self) -> Iterator[dict[str, Any]]:
@@ -258,12 +266,8 @@ def places_of(job: dict[str, Any], shown: Sequence[Picture]) -> Iterator[dict[st
     """Return the places that the verdict names, at the ends of their phases."""
     for phase in verdict.ended_phases(job):
         steps = [i for i, picture in enumerate(shown) if picture.name.partition(",")[0] == phase.phase]
-        found = [(f"farthest from the tools at the end of the path of {punch['tool']}", punch["off_tools"])
-                 for punch in phase.closing["punches"]]
-        found += [("farthest from the tools in walls", punch["off_walls"]) for punch in phase.closing["punches"]]
-        found += [(f"path left of {punch['tool']} is shortest", punch["path_left"]) for punch in phase.closing["punches"]]
-        found += [(f"highest wave under {holder['tool']}", holder["wave"]) for holder in phase.closing["holders"]]
-        found += [(f"rim farthest beyond {holder['tool']}", holder["beyond"]) for holder in phase.closing["holders"]]
+        found = [(text.format(tool["tool"]), tool[member]) for kind, member, text in PLACES
+                 for tool in phase.closing[kind]]
         for text, place in found:
             if place and steps:
                 yield {"text": f"{phase.phase}: {text}, {place['distance']:.2g} mm", "step": steps[-1],

@@ -1,133 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The interactive part of the page of a run. Curves: elements with the attribute data-curves become charts. 3D: the
-// scene of scene.py is drawn by three.js; charts by Chart.js; both are in `library`.
+// The 3D view of a page: the scene of scene.py, drawn by three.js, with its controls and its charts.
 "use strict";
-const { Chart, Vector3 } = library;
-Chart.register(library.LinearScale, library.LineElement, library.PointElement, library.ScatterController,
-  library.Legend, library.Tooltip);
-Chart.defaults.animation = false;
-Chart.defaults.maintainAspectRatio = false;
-const element = (name) => document.getElementById(name);
-const named = ({ label }) => label.startsWith("_") ? "" : `${label}: `;
-const round = (value) => String(Number(value.toPrecision(4)));
-
-// ---- charts -------------------------------------------------------------------------------------------------------
-
-// Equal scales on both axes: the shorter range is widened, about the middle.
-const equalScales = {
-  id: "equalScales",
-  afterLayout(chart, _, options) {
-    if (!options.on || !chart.chartArea) return;
-    const { x, y } = chart.options.scales, { width, height } = chart.chartArea, points = chart.data.datasets
-      .flatMap((set) => set.data).filter((point) => point && Number.isFinite(point.x));
-    if (!points.length || !width) return;
-    const ends = (key) => points.reduce(([a, b], p) => [Math.min(a, p[key]), Math.max(b, p[key])], [Infinity, -Infinity]);
-    const [left, right] = ends("x"), [below, above] = ends("y");
-    const scale = 1.06 * Math.max((right - left) / width, (above - below) / height, 1e-9);
-    for (const [axis, low, high, size] of [[x, left, right, width], [y, below, above, height]]) {
-      const from = (low + high) / 2 - scale * size / 2, to = from + scale * size;
-      if (Math.abs(axis.min - from) + Math.abs(axis.max - to) > 1e-3 * scale * size || axis.min === undefined) {
-        [axis.min, axis.max] = [from, to];
-        chart.again = true;
-      }
-    }
-    if (chart.again) {
-      chart.again = false;
-      setTimeout(() => chart.update());
-    }
-  },
-};
-Chart.register(equalScales);
-
-// A chart of sets of points {x, y}; `tell` gives the lines of the hover text of a point.
-function newChart(canvas, x, y, { equal = false, tell = null, hover = null, legend = true } = {}) {
-  const axis = (text) => ({ type: "linear", title: { display: true, text }, ticks: { includeBounds: false }, grid: { color: "#e4e6ea" } });
-  return new Chart(canvas, {
-    type: "scatter", data: { datasets: [] },
-    options: {
-      scales: { x: axis(x), y: axis(y) }, interaction: { mode: "nearest", intersect: false },
-      onHover: (_, found) => hover && hover(found[0]),
-      plugins: {
-        equalScales: { on: equal },
-        legend: { display: legend, labels: { boxWidth: 14, filter: (item) => !item.text.startsWith("_") } },
-        tooltip: {
-          callbacks: {
-            label: (item) => tell ? tell(item) : `${named(item.dataset)}${round(item.parsed.x)}, ${round(item.parsed.y)}`,
-          },
-        },
-      },
-    },
-  });
-}
-
-// Pictures of curves become charts.
-for (const box of document.querySelectorAll("[data-curves]")) {
-  const figure = JSON.parse(element(box.dataset.curves).textContent), row = document.createElement("div");
-  row.className = "curves";
-  box.replaceWith(row);
-  for (const axes of figure) {
-    const place = document.createElement("div"), canvas = document.createElement("canvas");
-    place.append(canvas);
-    row.append(place);
-    const chart = newChart(canvas, axes.x, axes.y, { equal: axes.equal });
-    chart.data.datasets = axes.lines.map((line) => ({
-      label: line.label, data: line.x.map((x, i) => ({ x, y: line.y[i] })), borderColor: line.colour,
-      backgroundColor: line.colour, showLine: line.line, borderDash: line.dashed ? [6, 4] : [], borderWidth: line.width,
-      pointRadius: line.points ? 2 : 0, pointHitRadius: 8,
-    }));
-    chart.update();
-  }
-}
-
-// ---- data of the 3D view ------------------------------------------------------------------------------------------
-
-const SIZES = { uint8: 1, uint16: 2, uint32: 4, float32: 4 };
-const KINDS = { uint8: Uint8Array, uint16: Uint16Array, uint32: Uint32Array, float32: Float32Array };
-const known = new Map();
-
-// Return an array of the page by its description.
-async function decode({ number, kind, low, scale }) {
-  const bytes = Uint8Array.from(atob(element("array" + number).textContent), (letter) => letter.charCodeAt(0));
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
-  const sorted = new Uint8Array(await new Response(stream).arrayBuffer());
-  const size = SIZES[kind], count = sorted.length / size, together = new Uint8Array(sorted.length);
-  for (let part = 0; part < size; part++) {
-    for (let i = 0; i < count; i++) together[i * size + part] = sorted[part * count + i];
-  }
-  const values = new KINDS[kind](together.buffer);
-  return kind === "uint16" ? Float32Array.from(values, (value) => low + scale * value) : values;
-}
-
-function read(array) {
-  if (!known.has(array.number)) known.set(array.number, decode(array));
-  return known.get(array.number);
-}
-
-const readAll = (arrays) => Promise.all(arrays.map(read));
-
-// Round numbers between two ends: about `count` ticks, the ends among them.
-function roundRange(low, high, count = 8) {
-  if (!(high > low)) [low, high] = [low - Math.max(1e-6, 1e-3 * Math.abs(low)), low + Math.max(1e-6, 1e-3 * Math.abs(low))];
-  const rough = (high - low) / count, power = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 2.5, 5, 10].find((factor) => factor * power >= 0.999 * rough) * power;
-  const first = Math.floor(low / step + 1e-6), last = Math.ceil(high / step - 1e-6);
-  const ticks = Array.from({ length: last - first + 1 }, (_, i) => (first + i) * step);
-  return { low: ticks[0], high: ticks[ticks.length - 1], ticks, step };
-}
-
-// ---- 3D view ------------------------------------------------------------------------------------------------------
+const { Vector3 } = library;
 
 const TOOL_COLOURS = [0x8d99a6, 0xa69b8d, 0x93a68d, 0xa08da6];
-const DIRECTIONS = { iso: [-0.9, -1.6, 0.9], front: [0, -1, 0], side: [-1, 0, 0], top: [0, -1e-4, 1], below: [-0.9, -1.6, -0.9] };
-const RIM = 2, UPPER = 1, MOST_POINTS = 5000; // sides of a skin; points of each kind in the diagram
+const DIRECTIONS = {
+  iso: [-0.9, -1.6, 0.9],
+  front: [0, -1, 0],
+  side: [-1, 0, 0],
+  top: [0, -1e-4, 1],
+  below: [-0.9, -1.6, -0.9],
+};
+const RIM = 2,
+  UPPER = 1; // sides of a skin
 
 async function openViewer(scene) {
-  const { BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial } = library;
-  const view = element("view"), renderer = new library.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+  const { BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial } =
+    library;
+  const view = element("view"),
+    renderer = new library.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
   renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
   renderer.localClippingEnabled = true;
   view.prepend(renderer.domElement);
-  const world = new library.Scene(), camera = new library.OrthographicCamera(-1, 1, 1, -1, -1e4, 1e4);
+  const world = new library.Scene(),
+    camera = new library.OrthographicCamera(-1, 1, 1, -1, -1e4, 1e4);
   world.background = new library.Color("white");
   camera.up.set(0, 0, 1);
   const lamp = new library.DirectionalLight(0xffffff, 1.6);
@@ -139,15 +35,17 @@ async function openViewer(scene) {
   const state = { step: scene.steps.findLastIndex((step) => !step.free), field: 0, values: null, mesh: null };
 
   // Groups of the images of the model: one for each product of reflections.
-  const signs = scene.mirror.reduce((all, axis) => all.concat(all.map((sign) => sign.map(
-    (value, i) => "xyz"[i] === axis ? -value : value))), [[1, 1, 1]]);
+  const signs = scene.mirror.reduce(
+    (all, axis) => all.concat(all.map((sign) => sign.map((value, i) => ("xyz"[i] === axis ? -value : value)))),
+    [[1, 1, 1]],
+  );
   const images = signs.map((sign) => {
     const group = new Group();
     group.scale.set(...sign);
     world.add(group);
     return group;
   });
-  const shownImages = () => element("mirror").checked ? images : images.slice(0, 1);
+  const shownImages = () => (element("mirror").checked ? images : images.slice(0, 1));
 
   // Objects that all images show share geometry and material.
   function inImages(make) {
@@ -157,7 +55,10 @@ async function openViewer(scene) {
       return object;
     });
   }
-  const clipped = (material) => { materials.push(material); return material; };
+  const clipped = (material) => {
+    materials.push(material);
+    return material;
+  };
   const materials = [];
   const bar = new library.DataTexture(new Uint8Array(4 * 256), 256, 1);
   bar.colorSpace = library.SRGBColorSpace;
@@ -165,7 +66,8 @@ async function openViewer(scene) {
   const coloured = clipped(new MeshLambertMaterial({ map: bar, side: library.DoubleSide, ...pushed }));
   const dark = clipped(new LineBasicMaterial({ color: 0x333333, transparent: true, opacity: 0.55 }));
   const empty = new BufferGeometry();
-  const sheets = inImages(() => new Mesh(empty, coloured)), lines = inImages(() => new LineSegments(empty, dark));
+  const sheets = inImages(() => new Mesh(empty, coloured)),
+    lines = inImages(() => new LineSegments(empty, dark));
   const ghostly = clipped(new LineBasicMaterial({ color: 0x0072b2, transparent: true, opacity: 0.6 }));
   const ghosts = inImages(() => new LineSegments(empty, ghostly));
   const onTop = (color) => new LineBasicMaterial({ color, depthTest: false, transparent: true });
@@ -178,8 +80,10 @@ async function openViewer(scene) {
     const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array(parts), 3));
     inImages(() => new LineSegments(geometry, beadLine));
   }
-  const mark = new Mesh(new library.SphereGeometry(1, 16, 12),
-    new library.MeshBasicMaterial({ color: 0xcc0066, depthTest: false, transparent: true }));
+  const mark = new Mesh(
+    new library.SphereGeometry(1, 16, 12),
+    new library.MeshBasicMaterial({ color: 0xcc0066, depthTest: false, transparent: true }),
+  );
   mark.renderOrder = 4;
   mark.visible = false;
   world.add(mark);
@@ -198,13 +102,20 @@ async function openViewer(scene) {
       const parts = await readAll(names.map((name) => scene.meshes[number][name]));
       const mesh = Object.fromEntries(names.map((name, i) => [name, parts[i]]));
       const attribute = (count, size) => new BufferAttribute(new Float32Array(count * size), size);
-      mesh.smooth = new BufferGeometry().setIndex(new BufferAttribute(new Uint32Array(mesh.triangles), 1))
-        .setAttribute("position", attribute(mesh.places.length, 3)).setAttribute("uv", attribute(mesh.places.length, 2));
+      mesh.smooth = new BufferGeometry()
+        .setIndex(new BufferAttribute(new Uint32Array(mesh.triangles), 1))
+        .setAttribute("position", attribute(mesh.places.length, 3))
+        .setAttribute("uv", attribute(mesh.places.length, 2));
       mesh.split = new BufferGeometry(); // three vertices of its own for each triangle, for one colour each
-      for (const [name, size] of [["position", 3], ["normal", 3], ["uv", 2]]) {
+      for (const [name, size] of [
+        ["position", 3],
+        ["normal", 3],
+        ["uv", 2],
+      ]) {
         mesh.split.setAttribute(name, attribute(mesh.triangles.length, size));
       }
-      mesh.lines = new BufferGeometry().setIndex(new BufferAttribute(new Uint32Array(mesh.edges), 1))
+      mesh.lines = new BufferGeometry()
+        .setIndex(new BufferAttribute(new Uint32Array(mesh.edges), 1))
         .setAttribute("position", mesh.smooth.getAttribute("position"));
       meshes.set(number, mesh);
     }
@@ -212,17 +123,36 @@ async function openViewer(scene) {
   }
   const tools = [];
   for (const [i, tool] of scene.tools.entries()) {
-    const [triangles, edges, ...points] = await readAll([tool.triangles, tool.edges, ...tool.points, ...tool.edge_points]);
-    const all = (arrays) => positions(arrays, Array.from({ length: arrays[0].length }, (_, k) => k));
-    const skin = new BufferGeometry().setIndex(new BufferAttribute(new Uint32Array(triangles), 1))
+    const [triangles, edges, ...points] = await readAll([
+      tool.triangles,
+      tool.edges,
+      ...tool.points,
+      ...tool.edge_points,
+    ]);
+    const all = (arrays) =>
+      positions(
+        arrays,
+        Array.from({ length: arrays[0].length }, (_, k) => k),
+      );
+    const skin = new BufferGeometry()
+      .setIndex(new BufferAttribute(new Uint32Array(triangles), 1))
       .setAttribute("position", new BufferAttribute(all(points.slice(0, 3)), 3));
-    const net = new BufferGeometry().setIndex(new BufferAttribute(new Uint32Array(edges), 1))
+    const net = new BufferGeometry()
+      .setIndex(new BufferAttribute(new Uint32Array(edges), 1))
       .setAttribute("position", new BufferAttribute(all(points.slice(3)), 3));
     skin.computeVertexNormals();
-    const material = clipped(new MeshLambertMaterial({ color: TOOL_COLOURS[i % TOOL_COLOURS.length], transparent: true,
-      opacity: 0.35, side: library.DoubleSide, depthWrite: false }));
+    const material = clipped(
+      new MeshLambertMaterial({
+        color: TOOL_COLOURS[i % TOOL_COLOURS.length],
+        transparent: true,
+        opacity: 0.35,
+        side: library.DoubleSide,
+        depthWrite: false,
+      }),
+    );
     const edge = clipped(new LineBasicMaterial({ color: 0x555555, transparent: true, opacity: 0.5 }));
-    const label = document.createElement("label"), box = document.createElement("input");
+    const label = document.createElement("label"),
+      box = document.createElement("input");
     box.type = "checkbox";
     box.checked = true;
     box.id = `tool_${tool.name}`;
@@ -231,78 +161,28 @@ async function openViewer(scene) {
     element("tools").append(label);
     const objects = [...inImages(() => new Mesh(skin, material)), ...inImages(() => new LineSegments(net, edge))];
     const touched = clipped(new MeshLambertMaterial({ map: bar, side: library.DoubleSide }));
-    tools.push({ ...tool, objects, box, skin, prints: inImages(() => new Mesh(empty, touched)), matrix: new library.Matrix4() });
+    tools.push({
+      ...tool,
+      objects,
+      box,
+      skin,
+      prints: inImages(() => new Mesh(empty, touched)),
+      matrix: new library.Matrix4(),
+    });
   }
-
-  // ---- fields, colours, legend ----
-  function range() {
-    const field = scene.fields[state.field], factor = field.percent ? 100 : 1, { values } = state;
-    if (field.names) return { low: -0.5, high: field.names.length - 0.5, ticks: field.names.map((_, i) => i), step: 1 };
-    let [low, high] = [field.low, field.high];
-    if (element("range").value === "step" && values) {
-      [low, high] = values.reduce(([a, b], value) => [Math.min(a, value), Math.max(b, value)], [Infinity, -Infinity]);
-    }
-    if (element("range").value === "own") {
-      const [a, b] = ["low", "high"].map((name) => parseFloat(element(name).value));
-      if (b > a) return { ...roundRange(a, b), low: a, high: b };
-    }
-    return roundRange(factor * low, factor * high);
-  }
-
-  function colourOf(field, shown, part) {
-    if (field.names) {
-      const number = Math.min(field.names.length - 1, Math.floor(part * field.names.length));
-      return [1, 3, 5].map((i) => parseInt(field.colours[number].slice(i, i + 2), 16));
-    }
-    let value = shown.low + part * (shown.high - shown.low);
-    if (element("bands").checked) value = Math.min((Math.floor(value / shown.step) + 0.5) * shown.step, shown.high);
-    const signed = shown.low < -1e-9 * shown.high && shown.high > 0, largest = Math.max(-shown.low, shown.high);
-    const map = scene.maps[signed ? "diverging" : element("map").value];
-    const at = (signed ? 0.5 + 0.5 * value / largest : (value - shown.low) / (shown.high - shown.low)) * (map.length - 1);
-    const i = Math.max(0, Math.min(map.length - 2, Math.floor(at))), rest = Math.max(0, Math.min(1, at - i));
-    return [0, 1, 2].map((k) => Math.round(255 * ((1 - rest) * map[i][k] + rest * map[i + 1][k])));
-  }
-
-  function drawLegend(field, shown) {
-    const canvas = element("legend"), context = canvas.getContext("2d"), top = 62, height = canvas.height - top - 10;
-    context.clearRect(0, 0, canvas.width, canvas.height);
-    context.fillStyle = "#ffffffcc";
-    context.fillRect(0, 0, canvas.width, canvas.height);
-    for (let i = 0; i < height; i++) {
-      context.fillStyle = `rgb(${colourOf(field, shown, 1 - (i + 0.5) / height)})`;
-      context.fillRect(2, top + i, 18, 1.5);
-    }
-    context.fillStyle = "#222";
-    context.font = "13px system-ui,sans-serif";
-    const words = labelOf(field).split(" "), rows = [""];
-    for (const word of words) {
-      if (context.measureText(rows.at(-1) + word).width > canvas.width - 6) rows.push("");
-      rows[rows.length - 1] += word + " ";
-    }
-    rows.slice(0, 4).forEach((row, i) => context.fillText(row, 2, 12 + 14 * i));
-    const digits = Math.max(0, Math.min(8, -Math.floor(Math.log10(shown.step) + 1e-9) + (/25/.test(String(shown.step)) ? 1 : 0)));
-    for (const tick of shown.ticks) {
-      const y = top + height * (1 - (tick - shown.low) / (shown.high - shown.low));
-      if (y < top - 1 || y > top + height + 1) continue;
-      context.fillRect(20, y, 4, 1);
-      context.fillText(field.names ? field.names[tick] : tick.toFixed(digits), 27, y + 4, canvas.width - 28);
-    }
-  }
-
-  const labelOf = (field) => field.percent ? `${field.label} (%)` : field.label;
-  const valueText = (field, value) => field.names ? field.names[Math.round(value)]
-    : field.percent ? `${round(100 * value)} %` : `${round(value)} ${/\(([^()]*)\)$/.exec(field.label)?.[1] ?? ""}`.trim();
 
   // Set the colours of the vertices, of a geometry with one value for each vertex or for each triangle.
   function paint(mesh, field, values, shown) {
-    const factor = field.percent ? 100 : 1, place = (value) => (factor * value - shown.low) / (shown.high - shown.low);
+    const factor = field.percent ? 100 : 1,
+      place = (value) => (factor * value - shown.low) / (shown.high - shown.low);
     if (!field.elements && !field.names) {
       const uv = mesh.smooth.getAttribute("uv");
       for (let i = 0; i < mesh.places.length; i++) uv.array[2 * i] = place(values[mesh.places[i]]);
       uv.needsUpdate = true;
       return mesh.smooth;
     }
-    const { position, normal, uv } = mesh.split.attributes, from = mesh.smooth.attributes;
+    const { position, normal, uv } = mesh.split.attributes,
+      from = mesh.smooth.attributes;
     for (let i = 0; i < mesh.triangles.length; i++) {
       const vertex = mesh.triangles[i];
       for (let k = 0; k < 3; k++) {
@@ -328,8 +208,12 @@ async function openViewer(scene) {
   // ---- a step ----
   let wanted = 0;
   async function show() {
-    const turn = ++wanted, step = scene.steps[state.step], field = scene.fields[state.field];
-    const mesh = await openMesh(step.mesh), points = await readAll(step.points), array = field.values[state.step];
+    const turn = ++wanted,
+      step = scene.steps[state.step],
+      field = scene.fields[state.field];
+    const mesh = await openMesh(step.mesh),
+      points = await readAll(step.points),
+      array = field.values[state.step];
     const values = array ? await read(array) : null;
     const toolField = scene.fields.find((one) => one.name === "contact_tool" && !one.elements);
     const prints = element("pressure").checked && toolField ? await read(toolField.values[state.step]) : null;
@@ -342,9 +226,10 @@ async function openViewer(scene) {
     mesh.smooth.computeVertexNormals();
     mesh.smooth.computeBoundingSphere();
     mesh.lines.boundingSphere = mesh.smooth.boundingSphere;
-    const shown = range();
+    const shown = rangeOf(field, values);
     state.shown = shown;
-    for (let i = 0; i < 256; i++) bar.image.data.set([...colourOf(field, shown, (i + 0.5) / 256), 255], 4 * i);
+    for (let i = 0; i < 256; i++)
+      bar.image.data.set([...colourOf(scene.maps, field, shown, (i + 0.5) / 256), 255], 4 * i);
     bar.needsUpdate = true;
     coloured.color.set(values ? 0xffffff : 0xc8ccd0);
     if (!!coloured.map !== !!values) [coloured.map, coloured.needsUpdate] = [values ? bar : null, true];
@@ -355,18 +240,21 @@ async function openViewer(scene) {
       ghosts[i].visible = !!drawn && element("drawn").checked;
     }
     if (drawn) {
-      ghosts[0].geometry = new BufferGeometry().setIndex(mesh.lines.getIndex())
+      ghosts[0].geometry = new BufferGeometry()
+        .setIndex(mesh.lines.getIndex())
         .setAttribute("position", new BufferAttribute(positions(drawn, mesh.places), 3));
       for (const ghost of ghosts) ghost.geometry = ghosts[0].geometry;
     }
     for (const tool of tools) placeTool(tool, step, mesh, prints);
-    images.forEach((group, i) => { group.visible = i === 0 || element("mirror").checked; });
-    drawLegend(field, shown);
+    images.forEach((group, i) => {
+      group.visible = i === 0 || element("mirror").checked;
+    });
+    drawLegend(scene.maps, field, shown);
     element("step").value = state.step;
     element("step_name").textContent = step.name + (values ? "" : "; the field is not known at this step");
     element("field_help").textContent = field.help;
     section();
-    await limitDiagram(step);
+    await limitDiagram();
     render();
   }
 
@@ -380,49 +268,44 @@ async function openViewer(scene) {
       object.matrix.copy(tool.matrix);
     }
     // The pressure on a tool is that of the faces of the sheet which touch it, in the colours of the field.
-    tool.prints.forEach((object) => { object.visible = !!prints && tool.visible; });
+    tool.prints.forEach((object) => {
+      object.visible = !!prints && tool.visible;
+    });
     if (!prints || !tool.visible) return;
     const index = [];
     for (let t = 0; t < mesh.triangles.length; t += 3) {
       const corners = [mesh.triangles[t], mesh.triangles[t + 1], mesh.triangles[t + 2]];
-      if (mesh.sides[t / 3] !== RIM && corners.some((vertex) => prints[mesh.places[vertex]] === tool.number)) index.push(...corners);
+      if (mesh.sides[t / 3] !== RIM && corners.some((vertex) => prints[mesh.places[vertex]] === tool.number))
+        index.push(...corners);
     }
-    const geometry = new BufferGeometry().setIndex(index).setAttribute("position", mesh.smooth.getAttribute("position"))
-      .setAttribute("normal", mesh.smooth.getAttribute("normal")).setAttribute("uv", mesh.smooth.getAttribute("uv"));
+    const geometry = new BufferGeometry()
+      .setIndex(index)
+      .setAttribute("position", mesh.smooth.getAttribute("position"))
+      .setAttribute("normal", mesh.smooth.getAttribute("normal"))
+      .setAttribute("uv", mesh.smooth.getAttribute("uv"));
     for (const object of tool.prints) object.geometry = geometry;
   }
 
   // ---- section ----
   function place() {
-    const choice = element("normal").value, angle = choice === "turned" ? Math.PI / 180 * parseFloat(element("angle").value || 0) : 0;
-    const normal = choice === "turned" ? [-Math.sin(angle), Math.cos(angle), 0] : ["x", "y", "z"].map((axis) => +(axis === choice));
+    const choice = element("normal").value,
+      angle = choice === "turned" ? (Math.PI / 180) * parseFloat(element("angle").value || 0) : 0;
+    const normal =
+      choice === "turned" ? [-Math.sin(angle), Math.cos(angle), 0] : ["x", "y", "z"].map((axis) => +(axis === choice));
     const [low, high] = [box.min, box.max].map((corner) => corner.toArray());
-    const reach = normal.reduce(([a, b], n, i) => [a + Math.min(n * low[i], n * high[i]), b + Math.max(n * low[i], n * high[i])], [0, 0]);
-    return { normal, distance: reach[0] + (reach[1] - reach[0]) * element("offset").value / 1000, choice };
-  }
-
-  // Return the ends of the lines in which a plane cuts triangles: points, and values where `valueAt` gives them.
-  function cutOf(triangles, at, sign, { normal, distance }, keep = () => true) {
-    const height = new Float64Array(at.length / 3), found = [];
-    for (let i = 0; i < height.length; i++) {
-      height[i] = normal.reduce((sum, n, k) => sum + n * sign[k] * at[3 * i + k], -distance - 1.234e-7 * size);
-    }
-    for (let t = 0; t < triangles.length; t += 3) {
-      const [a, b, c] = [triangles[t], triangles[t + 1], triangles[t + 2]];
-      const above = (height[a] > 0) + (height[b] > 0) + (height[c] > 0);
-      if (above === 0 || above === 3 || !keep(t / 3)) continue;
-      const ends = [[a, b], [b, c], [c, a]].filter(([p, q]) => height[p] > 0 !== height[q] > 0).map(([p, q]) => {
-        const part = height[p] / (height[p] - height[q]);
-        return { p, q, part, point: [0, 1, 2].map((k) => sign[k] * ((1 - part) * at[3 * p + k] + part * at[3 * q + k])) };
-      });
-      found.push({ ends, triangle: t / 3 });
-    }
-    return found;
+    const reach = normal.reduce(
+      ([a, b], n, i) => [a + Math.min(n * low[i], n * high[i]), b + Math.max(n * low[i], n * high[i])],
+      [0, 0],
+    );
+    return { normal, distance: reach[0] + ((reach[1] - reach[0]) * element("offset").value) / 1000, choice };
   }
 
   function section() {
-    const on = element("cut").checked, cut = place(), { mesh, values } = state;
-    element("offset_value").textContent = `${{ turned: "distance" }[cut.choice] ?? cut.choice} = ${cut.distance.toFixed(2)} mm`;
+    const on = element("cut").checked,
+      cut = place(),
+      { mesh, values } = state;
+    element("offset_value").textContent =
+      `${{ turned: "distance" }[cut.choice] ?? cut.choice} = ${cut.distance.toFixed(2)} mm`;
     element("angle_label").hidden = cut.choice !== "turned";
     const half = element("other").checked ? 1 : -1; // the half that stays
     plane.normal.set(...cut.normal).multiplyScalar(half);
@@ -434,39 +317,85 @@ async function openViewer(scene) {
     for (const name of ["profile_box", "along_box"]) element(name).hidden = !on;
     sectionLine.visible = on;
     if (!on) return;
-    const flat = ([x, y, z]) => cut.choice === "z" ? { x, y } : cut.choice === "x" ? { x: y, y: z }
-      : cut.choice === "y" ? { x, y: z } : { x: cut.normal[1] * x - cut.normal[0] * y, y: z };
-    const gapped = (segments) => segments.flatMap(({ ends }) => [...ends.map((end) => ({ ...flat(end.point), at: end.point })), { x: NaN, y: NaN }]);
-    const own = [], upper = [], sets = [], at = mesh.smooth.getAttribute("position").array;
+    const flat = ([x, y, z]) =>
+      cut.choice === "z"
+        ? { x, y }
+        : cut.choice === "x"
+          ? { x: y, y: z }
+          : cut.choice === "y"
+            ? { x, y: z }
+            : { x: cut.normal[1] * x - cut.normal[0] * y, y: z };
+    const gapped = (segments) =>
+      segments.flatMap(({ ends }) => [
+        ...ends.map((end) => ({ ...flat(end.point), at: end.point })),
+        { x: NaN, y: NaN },
+      ]);
+    const own = [],
+      upper = [],
+      sets = [],
+      at = mesh.smooth.getAttribute("position").array;
     const used = signs.slice(0, shownImages().length);
     for (const sign of used) {
-      own.push(...cutOf(mesh.triangles, at, sign, cut));
-      upper.push(...cutOf(mesh.triangles, at, sign, cut, (t) => mesh.sides[t] === UPPER));
+      own.push(...cutOf(mesh.triangles, at, sign, cut, size));
+      upper.push(...cutOf(mesh.triangles, at, sign, cut, size, (t) => mesh.sides[t] === UPPER));
     }
     sets.push(lineSet("sheet", "#0072b2", gapped(own), 1.6));
     if (ghosts[0].visible) {
       const drawnAt = ghosts[0].geometry.getAttribute("position").array;
-      sets.push(lineSet("drawn shape", "#d55e00", used.flatMap((sign) => gapped(cutOf(mesh.triangles, drawnAt, sign, cut))), 1));
+      sets.push(
+        lineSet(
+          "drawn shape",
+          "#d55e00",
+          used.flatMap((sign) => gapped(cutOf(mesh.triangles, drawnAt, sign, cut, size))),
+          1,
+        ),
+      );
     }
     for (const [i, tool] of tools.entries()) {
       if (!tool.visible) continue;
       const points = tool.skin.getAttribute("position").clone().applyMatrix4(tool.matrix).array;
       const colour = "#" + TOOL_COLOURS[i % TOOL_COLOURS.length].toString(16);
-      sets.push(lineSet(tool.name, colour, used.flatMap((sign) => gapped(cutOf(tool.skin.getIndex().array, points, sign, cut))), 1));
+      sets.push(
+        lineSet(
+          tool.name,
+          colour,
+          used.flatMap((sign) => gapped(cutOf(tool.skin.getIndex().array, points, sign, cut, size))),
+          1,
+        ),
+      );
     }
-    const names = { x: ["y (mm)", "z (mm)"], y: ["x (mm)", "z (mm)"], z: ["x (mm)", "y (mm)"], turned: ["in the plane (mm)", "z (mm)"] }[cut.choice];
+    const names = {
+      x: ["y (mm)", "z (mm)"],
+      y: ["x (mm)", "z (mm)"],
+      z: ["x (mm)", "y (mm)"],
+      turned: ["in the plane (mm)", "z (mm)"],
+    }[cut.choice];
     [profile.options.scales.x.title.text, profile.options.scales.y.title.text] = names;
     profile.data.datasets = sets;
     profile.update();
     sectionLine.geometry.dispose();
-    sectionLine.geometry = new BufferGeometry().setAttribute("position",
-      new BufferAttribute(new Float32Array(own.flatMap(({ ends }) => ends.flatMap((end) => end.point))), 3));
+    sectionLine.geometry = new BufferGeometry().setAttribute(
+      "position",
+      new BufferAttribute(new Float32Array(own.flatMap(({ ends }) => ends.flatMap((end) => end.point))), 3),
+    );
     state.section = { own, upper };
     const field = scene.fields[state.field];
     along.options.scales.x.title.text = "length along the upper face (mm)";
     along.options.scales.y.title.text = labelOf(field);
-    along.data.datasets = values ? chained(upper).map((chain, i) => lineSet(i ? `_${i}` : field.label, "#0072b2",
-      chain.map(({ length, end, triangle }) => ({ x: length, y: (field.percent ? 100 : 1) * valueAt(field, end, triangle), at: end.point })), 1.6)) : [];
+    along.data.datasets = values
+      ? chained(upper, size).map((chain, i) =>
+          lineSet(
+            i ? `_${i}` : field.label,
+            "#0072b2",
+            chain.map(({ length, end, triangle }) => ({
+              x: length,
+              y: (field.percent ? 100 : 1) * valueAt(field, end, triangle),
+              at: end.point,
+            })),
+            1.6,
+          ),
+        )
+      : [];
     along.update();
   }
 
@@ -476,90 +405,50 @@ async function openViewer(scene) {
     return (1 - end.part) * values[mesh.places[end.p]] + end.part * values[mesh.places[end.q]];
   }
 
-  const lineSet = (label, colour, data, width) => ({ label, data, borderColor: colour, backgroundColor: colour,
-    borderWidth: width, showLine: true, spanGaps: false, pointRadius: 0, pointHitRadius: 6 });
-
-  // Join the lines of a section to chains, with the length along each.
-  function chained(segments) {
-    const key = ({ point }) => point.map((value) => Math.round(value / size * 2e5)).join(), at = new Map(), chains = [];
-    for (const segment of segments) {
-      for (const end of segment.ends) at.set(key(end), [...(at.get(key(end)) ?? []), segment]);
-    }
-    const left = new Set(segments), ends = segments.filter((one) => one.ends.some((end) => at.get(key(end)).length === 1));
-    for (const start of [...ends, ...segments]) {
-      if (!left.has(start)) continue;
-      const chain = [], open = start.ends.findIndex((end) => at.get(key(end)).length === 1);
-      let segment = start, end = start.ends[Math.max(open, 0)], length = 0;
-      while (segment) {
-        left.delete(segment);
-        const [a, b] = key(segment.ends[0]) === key(end) ? segment.ends : [...segment.ends].reverse();
-        chain.push({ length, end: a, triangle: segment.triangle });
-        length += Math.hypot(...a.point.map((value, k) => b.point[k] - value));
-        chain.push({ length, end: b, triangle: segment.triangle });
-        end = b;
-        segment = at.get(key(b)).find((one) => left.has(one));
-      }
-      chains.push(chain);
-    }
-    return chains.sort((one, other) => other.at(-1).length - one.at(-1).length);
-  }
-
   // ---- forming limit diagram ----
-  const roleField = (role, elements) => scene.fields.find((field) => field.role === role && field.elements === elements);
-  async function limitDiagram(step) {
-    const curve = scene.limit, sets = [], zones = roleField("zone", false), groups = new Map();
-    let thinned = false;
-    for (const elements of [false, true]) {
-      const fields = ["minor", "major", "zone"].map((role) => roleField(role, elements));
-      const arrays = fields.map((field) => field?.values[state.step]);
-      if (!arrays[0]) continue;
-      const [minor, major, zone] = await Promise.all(arrays.map((array) => array && read(array)));
-      if (!elements) state.strains = [minor, major];
-      // Of many points each k-th is drawn, apart for those above the curve.
-      const above = (i) => zone && zones.names[zone[i]] === "critical", counts = [0, 0], seen = [0, 0];
-      for (let i = 0; i < minor.length; i++) counts[+above(i)]++;
-      const skip = counts.map((count) => Math.max(1, Math.ceil(count / MOST_POINTS)));
-      thinned ||= Math.max(...skip) > 1;
-      for (let i = 0; i < minor.length; i++) {
-        const kind = +above(i), of = zone ? zone[i] : 0, name = `${elements} ${of}`;
-        if (seen[kind]++ % skip[kind]) continue;
-        if (!groups.has(name)) groups.set(name, { elements, of, data: [] });
-        groups.get(name).data.push({ x: minor[i], y: major[i], i, elements });
-      }
-    }
-    for (const { elements, of, data } of [...groups.values()].sort((one, other) => one.of - other.of)) {
-      const colour = zones ? zones.colours[of] : "#666666", name = zones ? zones.names[of] : elements ? "elements" : "nodes";
-      sets.push({ label: (zones && elements ? "_" : "") + name, data, borderColor: colour, backgroundColor: colour,
-        pointStyle: elements ? "rectRot" : "circle", pointRadius: 2, pointBorderWidth: 0, pointHitRadius: 4 });
-    }
-    if (curve.minor.length) {
-      const low = Math.min(-0.3, ...sets.map((set) => set.data.reduce((a, p) => Math.min(a, p.x), 0)));
-      const high = Math.max(0.3, ...sets.map((set) => set.data.reduce((a, p) => Math.max(a, p.x), 0)));
-      const points = (shift) => curve.minor.map((x, i) => ({ x, y: curve.major[i] - shift })).filter(({ x }) => x >= low && x <= high);
-      sets.unshift(lineSet(curve.label, "#222222", points(0), 1.6), { ...lineSet("marginal", "#222222", points(curve.margin), 1), borderDash: [5, 4] });
-    }
-    sets.unshift({ label: "_marked", data: [], pointRadius: 7, pointStyle: "circle",
-      borderColor: "#cc0066", backgroundColor: "transparent", borderWidth: 2 });
+  async function limitDiagram() {
+    const { sets, thinned } = await limitSets(scene, state);
+    sets.unshift({
+      label: "_marked",
+      data: [],
+      pointRadius: 7,
+      pointStyle: "circle",
+      borderColor: "#cc0066",
+      backgroundColor: "transparent",
+      borderWidth: 2,
+    });
     limitChart.data.datasets = sets;
     limitChart.update();
-    element("limit_help").textContent = `Dots: nodes; diamonds: elements${thinned ? ", a part of them" : ""}; logarithmic strains at the middle of the sheet.${
-      curve.minor.length ? "" : ` No curve: ${curve.label}.`} A point under the mouse is marked on the sheet, and the other way round.`;
+    element("limit_help").textContent =
+      `Dots: nodes; diamonds: elements${thinned ? ", a part of them" : ""}; logarithmic strains at the middle of the sheet.${
+        scene.limit.minor.length ? "" : ` No curve: ${scene.limit.label}.`
+      } A point under the mouse is marked on the sheet, and the other way round.`;
   }
   const limitChart = newChart(element("limit_chart"), "minor strain (logarithmic)", "major strain (logarithmic)", {
-    tell: ({ raw, dataset }) => "i" in raw ? `${raw.elements ? "element" : "node"} ${numberOf(raw)}: ${round(raw.x)}, ${round(raw.y)}`
-      : `${named(dataset)}${round(raw.x)}, ${round(raw.y)}`,
+    tell: ({ raw, dataset }) =>
+      "i" in raw
+        ? `${raw.elements ? "element" : "node"} ${numberOf(raw)}: ${round(raw.x)}, ${round(raw.y)}`
+        : `${named(dataset)}${round(raw.x)}, ${round(raw.y)}`,
     hover: (found) => {
       const raw = found && limitChart.data.datasets[found.datasetIndex].data[found.index];
-      markAt(raw && "i" in raw ? raw.elements ? centreOf(raw.i) : [0, 1, 2].map((k) => state.points[k][raw.i]) : null);
+      markAt(
+        raw && "i" in raw ? (raw.elements ? centreOf(raw.i) : [0, 1, 2].map((k) => state.points[k][raw.i])) : null,
+      );
     },
   });
-  const markHovered = (chart) => (found) => markAt(found && chart().data.datasets[found.datasetIndex].data[found.index]?.at);
+  const markHovered = (chart) => (found) =>
+    markAt(found && chart().data.datasets[found.datasetIndex].data[found.index]?.at);
   const tellSection = ({ raw, dataset }) => `${named(dataset)}${round(raw.x)}, ${round(raw.y)}`;
-  const profile = newChart(element("profile_chart"), "", "", { equal: true, tell: tellSection, hover: markHovered(() => profile) });
+  const profile = newChart(element("profile_chart"), "", "", {
+    equal: true,
+    tell: tellSection,
+    hover: markHovered(() => profile),
+  });
   const along = newChart(element("along_chart"), "", "", { tell: tellSection, hover: markHovered(() => along) });
   const numberOf = ({ i, elements }) => (elements ? state.mesh.elements : state.mesh.nodes)[i];
   function centreOf(owner) {
-    const { mesh, points } = state, sum = [0, 0, 0];
+    const { mesh, points } = state,
+      sum = [0, 0, 0];
     let count = 0;
     for (let t = 0; t < mesh.owners.length; t++) {
       if (mesh.owners[t] !== owner) continue;
@@ -581,20 +470,39 @@ async function openViewer(scene) {
   // Return what is at a place of the window: node, element, their values, the point; null where there is no sheet.
   function pick(clientX, clientY) {
     const frame = renderer.domElement.getBoundingClientRect();
-    ray.setFromCamera(new library.Vector2(2 * (clientX - frame.left) / frame.width - 1, 1 - 2 * (clientY - frame.top) / frame.height), camera);
+    ray.setFromCamera(
+      new library.Vector2(
+        (2 * (clientX - frame.left)) / frame.width - 1,
+        1 - (2 * (clientY - frame.top)) / frame.height,
+      ),
+      camera,
+    );
     const shown = sheets.slice(0, shownImages().length).filter((object) => object.visible);
-    const hit = ray.intersectObjects(shown, false).find(({ point }) => !element("cut").checked || plane.distanceToPoint(point) >= 0);
+    const hit = ray
+      .intersectObjects(shown, false)
+      .find(({ point }) => !element("cut").checked || plane.distanceToPoint(point) >= 0);
     if (!hit) return null;
-    const { mesh, points, values } = state, field = scene.fields[state.field], sign = signs[sheets.indexOf(hit.object)];
+    const { mesh, points, values } = state,
+      field = scene.fields[state.field],
+      sign = signs[sheets.indexOf(hit.object)];
     const corners = [0, 1, 2].map((k) => mesh.places[mesh.triangles[3 * hit.faceIndex + k]]);
     const position = (i) => [0, 1, 2].map((k) => sign[k] * points[k][i]);
     const far = (i) => Math.hypot(...position(i).map((value, k) => value - hit.point.toArray()[k]));
-    const place = corners.reduce((best, i) => far(i) < far(best) ? i : best), owner = mesh.owners[hit.faceIndex];
-    return { place, owner, node: mesh.nodes[place], element: mesh.elements[owner], position: position(place),
-      value: values ? values[field.elements ? owner : place] : null };
+    const place = corners.reduce((best, i) => (far(i) < far(best) ? i : best)),
+      owner = mesh.owners[hit.faceIndex];
+    return {
+      place,
+      owner,
+      node: mesh.nodes[place],
+      element: mesh.elements[owner],
+      position: position(place),
+      value: values ? values[field.elements ? owner : place] : null,
+    };
   }
   function tell(event) {
-    const found = event.buttons ? null : pick(event.clientX, event.clientY), told = element("told"), frame = view.getBoundingClientRect();
+    const found = event.buttons ? null : pick(event.clientX, event.clientY),
+      told = element("told"),
+      frame = view.getBoundingClientRect();
     told.style.display = found ? "block" : "none";
     let limitMark = null;
     if (found) {
@@ -612,22 +520,30 @@ element ${found.element}`;
   }
   let waiting = null;
   renderer.domElement.onpointermove = (event) => {
-    if (!waiting) requestAnimationFrame(() => { tell(waiting); waiting = null; });
+    if (!waiting)
+      requestAnimationFrame(() => {
+        tell(waiting);
+        waiting = null;
+      });
     waiting = event;
   };
-  renderer.domElement.onpointerleave = () => { element("told").style.display = "none"; };
+  renderer.domElement.onpointerleave = () => {
+    element("told").style.display = "none";
+  };
 
   // ---- camera ----
   const box = { min: new Vector3(Infinity, Infinity, Infinity), max: new Vector3(-Infinity, -Infinity, -Infinity) };
   for (const step of scene.steps) {
     for (const [k, array] of step.points.entries()) {
-      const axis = "xyz"[k], ends = [array.low, array.low + 65535 * array.scale];
+      const axis = "xyz"[k],
+        ends = [array.low, array.low + 65535 * array.scale];
       const both = scene.mirror.includes(axis) ? [...ends, -ends[0], -ends[1]] : ends;
       box.min[axis] = Math.min(box.min[axis], ...both);
       box.max[axis] = Math.max(box.max[axis], ...both);
     }
   }
-  const size = box.max.distanceTo(box.min), centre = box.min.clone().add(box.max).multiplyScalar(0.5);
+  const size = box.max.distanceTo(box.min),
+    centre = box.min.clone().add(box.max).multiplyScalar(0.5);
   mark.scale.setScalar(0.006 * size);
   function look(name) {
     const direction = new Vector3(...DIRECTIONS[name]).normalize();
@@ -638,7 +554,8 @@ element ${found.element}`;
     camera.updateMatrixWorld();
     let [wide, high] = [0, 0];
     for (let i = 0; i < 8; i++) {
-      const corner = new Vector3(...["x", "y", "z"].map((axis, k) => (i >> k & 1 ? box.max : box.min)[axis])).sub(centre)
+      const corner = new Vector3(...["x", "y", "z"].map((axis, k) => ((i >> k) & 1 ? box.max : box.min)[axis]))
+        .sub(centre)
         .applyQuaternion(camera.quaternion.clone().invert());
       wide = Math.max(wide, Math.abs(corner.x));
       high = Math.max(high, Math.abs(corner.y));
@@ -650,9 +567,14 @@ element ${found.element}`;
     const { clientWidth: width, clientHeight: height } = view;
     if (!width || !state.half) return;
     renderer.setSize(width, height);
-    const half = Math.max(state.half.high, state.half.wide * height / width, 1e-3);
-    const aside = half * element("legend").width / height; // the legend stands at the right of the sheet
-    Object.assign(camera, { left: aside - half * width / height, right: aside + half * width / height, top: half, bottom: -half });
+    const half = Math.max(state.half.high, (state.half.wide * height) / width, 1e-3);
+    const aside = (half * element("legend").width) / height; // the legend stands at the right of the sheet
+    Object.assign(camera, {
+      left: aside - (half * width) / height,
+      right: aside + (half * width) / height,
+      top: half,
+      bottom: -half,
+    });
     camera.updateProjectionMatrix();
     orbit.update();
     render();
@@ -664,7 +586,10 @@ element ${found.element}`;
 
   // ---- controls ----
   const choice = element("field");
-  for (const [name, elements] of [["At the nodes", false], ["At the elements", true]]) {
+  for (const [name, elements] of [
+    ["At the nodes", false],
+    ["At the elements", true],
+  ]) {
     const group = document.createElement("optgroup");
     group.label = name;
     scene.fields.forEach((field, i) => {
@@ -689,12 +614,37 @@ element ${found.element}`;
     return show();
   };
   element("step").max = scene.steps.length - 1;
-  element("step").oninput = () => { state.step = +element("step").value; return show(); };
-  for (const name of ["map", "bands", "range", "low", "high", "sheet", "lines", "mirror", "drawn", "released", "cut", "normal", "angle", "other"]) {
+  element("step").oninput = () => {
+    state.step = +element("step").value;
+    return show();
+  };
+  for (const name of [
+    "map",
+    "bands",
+    "range",
+    "low",
+    "high",
+    "sheet",
+    "lines",
+    "mirror",
+    "drawn",
+    "released",
+    "cut",
+    "normal",
+    "angle",
+    "other",
+  ]) {
     element(name).onchange = () => show();
   }
-  for (const name of ["low", "high"]) element(name).oninput = () => { element("range").value = "own"; };
-  element("offset").oninput = () => { element("cut").checked = true; section(); render(); };
+  for (const name of ["low", "high"])
+    element(name).oninput = () => {
+      element("range").value = "own";
+    };
+  element("offset").oninput = () => {
+    element("cut").checked = true;
+    section();
+    render();
+  };
   for (const name of Object.keys(DIRECTIONS)) {
     const button = document.createElement("button");
     button.textContent = name;
@@ -715,11 +665,20 @@ element ${found.element}`;
   element("released_label").hidden = !tools.length;
   element("pressure_label").hidden = !tools.length || !scene.fields.some((field) => field.name === "contact_tool");
   element("save").onclick = () => {
-    const both = document.createElement("canvas"), context = both.getContext("2d"), { width, height } = renderer.domElement;
+    const both = document.createElement("canvas"),
+      context = both.getContext("2d"),
+      { width, height } = renderer.domElement;
     Object.assign(both, { width, height });
     context.drawImage(renderer.domElement, 0, 0);
-    const ratio = width / view.clientWidth, legend = element("legend");
-    context.drawImage(legend, width - (legend.width + 4) * ratio, 10 * ratio, legend.width * ratio, legend.height * ratio);
+    const ratio = width / view.clientWidth,
+      legend = element("legend");
+    context.drawImage(
+      legend,
+      width - (legend.width + 4) * ratio,
+      10 * ratio,
+      legend.width * ratio,
+      legend.height * ratio,
+    );
     const link = document.createElement("a");
     link.download = "part.png";
     link.setAttribute("href", both.toDataURL());
@@ -727,7 +686,11 @@ element ${found.element}`;
   };
   let player = null;
   element("play").onclick = () => {
-    const stop = () => { clearInterval(player); player = null; element("play").textContent = "▶"; };
+    const stop = () => {
+      clearInterval(player);
+      player = null;
+      element("play").textContent = "▶";
+    };
     if (player) return stop();
     if (state.step === scene.steps.length - 1) state.step = -1;
     element("play").textContent = "❚❚";
@@ -741,14 +704,30 @@ element ${found.element}`;
   look("iso");
   await show();
   // What a console or a test can call.
-  return { scene, state, show, select, look, pick, marked: () => mark.visible ? mark.position.toArray() : null, project: (point) => {
-    const at = new Vector3(...point).project(camera), frame = renderer.domElement.getBoundingClientRect();
-    return [frame.left + (at.x + 1) / 2 * frame.width, frame.top + (1 - at.y) / 2 * frame.height];
-  } };
+  return {
+    scene,
+    state,
+    show,
+    select,
+    look,
+    pick,
+    marked: () => (mark.visible ? mark.position.toArray() : null),
+    project: (point) => {
+      const at = new Vector3(...point).project(camera),
+        frame = renderer.domElement.getBoundingClientRect();
+      return [frame.left + ((at.x + 1) / 2) * frame.width, frame.top + ((1 - at.y) / 2) * frame.height];
+    },
+  };
 }
 
 if (element("scene")) {
-  openViewer(JSON.parse(element("scene").textContent)).then((viewer) => { window.viewer = viewer; }, (error) => {
-    element("view").textContent = `The part in 3D cannot be shown by this browser: ${error.message}. The pictures below can.`;
-  });
+  openViewer(JSON.parse(element("scene").textContent)).then(
+    (viewer) => {
+      window.viewer = viewer;
+    },
+    (error) => {
+      element("view").textContent =
+        `The part in 3D cannot be shown by this browser: ${error.message}. The pictures below can.`;
+    },
+  );
 }
