@@ -147,6 +147,8 @@ def test_all_fields(page):
     assert ticks[0] < 0 < ticks[-1] and any(abs(tick) < 1e-9 for tick in ticks)
     step = (ticks[1] - ticks[0]) / 10 ** np.floor(np.log10(ticks[1] - ticks[0]) + 1e-9)
     assert round(step, 6) in (1, 2, 2.5, 5), ticks
+    said = page.evaluate("[[12.5, 2.5], [-0.025, 0.025], [0.3, 0.1], [1500, 500], [75, 25]].map(([a, b]) => tickText(a, b))")
+    assert said == ["12.5", "-0.025", "0.3", "1500", "75"]
     middle = page.evaluate("""() => {  // the colour at zero in the legend, white in the middle of the map
       const { low, high } = window.viewer.state.shown, canvas = document.getElementById("legend");
       const y = Math.round(62 + (canvas.height - 72) * high / (high - low));

@@ -23,6 +23,13 @@ function roundRange(low, high, count = 8) {
   return { low: ticks[0], high: ticks[ticks.length - 1], ticks, step };
 }
 
+// Return a tick with the digits that the step from tick to tick needs: one more for 2.5 than for 1, 2 and 5.
+function tickText(tick, step) {
+  const power = Math.floor(Math.log10(step) + 1e-9),
+    quarter = Math.abs(step / 10 ** power - 2.5) < 1e-6;
+  return tick.toFixed(Math.max(0, Math.min(9, quarter - power)));
+}
+
 // Return the range of the colours: its ends, its ticks and their distance; `values`: those of the step.
 function rangeOf(field, values) {
   const factor = field.percent ? 100 : 1;
@@ -77,14 +84,10 @@ function drawLegend(maps, field, shown) {
     rows[rows.length - 1] += word + " ";
   }
   rows.slice(0, 4).forEach((row, i) => context.fillText(row, 2, 12 + 14 * i));
-  const digits = Math.max(
-    0,
-    Math.min(8, -Math.floor(Math.log10(shown.step) + 1e-9) + (/25/.test(String(shown.step)) ? 1 : 0)),
-  );
   for (const tick of shown.ticks) {
     const y = top + height * (1 - (tick - shown.low) / (shown.high - shown.low));
     if (y < top - 1 || y > top + height + 1) continue;
     context.fillRect(20, y, 4, 1);
-    context.fillText(field.names ? field.names[tick] : tick.toFixed(digits), 27, y + 4, canvas.width - 28);
+    context.fillText(field.names ? field.names[tick] : tickText(tick, shown.step), 27, y + 4, canvas.width - 28);
   }
 }
