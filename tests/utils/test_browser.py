@@ -97,7 +97,7 @@ def test_section(page):
     page.locator("#cut").check()
     page.locator("#normal").select_option("y")
     page.locator("#offset").evaluate("slider => { slider.value = 800; slider.oninput(); }")
-    cut = page.evaluate("window.viewer.state.section.own.flatMap(({ends}) => ends.map(({point}) => point))")
+    cut = page.evaluate("window.viewer.section.own.flatMap(({ends}) => ends.map(({point}) => point))")
     cut = np.array(cut)
     assert np.abs(cut[:, 1] - 6).max() < 2e-3  # 0.8 of -10 to 10 mm
     assert abs(cut[:, 0].max() - 40) < 1e-2 and abs(cut[:, 0].min() + 40) < 1e-2

@@ -21,7 +21,7 @@ from dd3.viewer.skin import LOWER_SIDE, RIM, UPPER_SIDE, skin_of, turned
 
 
 def decoded(elements, array):
-    """Return an array of a page as viewer.js reads it."""
+    """Return an array of a page as data.js reads it."""
     data = gzip.decompress(base64.b64decode(re.search(">(.*)<", elements[array["number"]])[1]))
     kind = np.dtype(array["kind"])
     together = np.frombuffer(data, np.uint8).reshape(kind.itemsize, -1).T.tobytes()

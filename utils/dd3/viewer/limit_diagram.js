@@ -61,3 +61,58 @@ async function limitSets(scene, state) {
   }
   return { sets, thinned };
 }
+
+class LimitDiagram {
+  constructor(viewer) {
+    this.viewer = viewer;
+    const titles = ["minor strain (logarithmic)", "major strain (logarithmic)"];
+    const hover = (found) => this.markPoint(found && this.chart.data.datasets[found.datasetIndex].data[found.index]);
+    this.chart = newChart(element("limit_chart"), ...titles, { tell: (item) => this.tell(item), hover });
+  }
+
+  async update() {
+    const { scene, state } = this.viewer;
+    const { sets, thinned } = await limitSets(scene, state);
+    const ring = { pointRadius: 7, pointStyle: "circle", borderColor: "#cc0066", borderWidth: 2 };
+    this.chart.data.datasets = [{ label: "_marked", data: [], backgroundColor: "transparent", ...ring }, ...sets];
+    this.chart.update();
+    const part = thinned ? ", a part of them" : "";
+    const none = scene.limit.minor.length ? "" : ` No curve: ${scene.limit.label}.`;
+    element("limit_help").textContent =
+      `Dots: nodes; diamonds: elements${part}; logarithmic strains at the middle of the sheet.${none} ` +
+      "A point under the mouse is marked on the sheet, and the other way round.";
+  }
+
+  tell({ raw, dataset }) {
+    const { mesh } = this.viewer.state;
+    const name = raw.elements ? "element" : "node";
+    const point = "i" in raw ? `${name} ${(raw.elements ? mesh.elements : mesh.nodes)[raw.i]}: ` : named(dataset);
+    return `${point}${round(raw.x)}, ${round(raw.y)}`;
+  }
+
+  // Mark a node in the diagram, by its place in the arrays.
+  markNode(place) {
+    const { strains } = this.viewer.state;
+    const known = place !== null && strains;
+    this.chart.data.datasets[0].data = known ? [{ x: strains[0][place], y: strains[1][place] }] : [];
+    this.chart.update("none");
+  }
+
+  // Mark the node or the element of a point of the diagram on the sheet.
+  markPoint(point) {
+    const { points } = this.viewer.state;
+    const node = (i) => [0, 1, 2].map((k) => points[k][i]);
+    const known = point && "i" in point;
+    this.viewer.stage.markAt(known ? (point.elements ? this.centreOf(point.i) : node(point.i)) : null);
+  }
+
+  // Return the mean place of the corners of the outer triangles of an element.
+  centreOf(owner) {
+    const { mesh, points } = this.viewer.state;
+    const places = [];
+    mesh.owners.forEach((one, t) => {
+      if (one === owner) places.push(...mesh.triangles.slice(3 * t, 3 * t + 3));
+    });
+    return points.map((axis) => places.reduce((sum, vertex) => sum + axis[mesh.places[vertex]], 0) / places.length);
+  }
+}

@@ -14,7 +14,8 @@ from matplotlib.figure import Figure
 from dd3.viewer.scene import Scene
 
 FOLDER = Path(__file__).parent
-SCRIPTS = ("library.min.js", "charts.js", "data.js", "colours.js", "limit_diagram.js", "viewer.js")
+SCRIPTS = ("library.min.js", "charts.js", "data.js", "colours.js", "stage.js", "bodies.js", "section.js",
+           "limit_diagram.js", "viewer.js")
 DIGITS = 5  # of the numbers of curves
 
 
