@@ -42,7 +42,8 @@ def copy_pages(pages):
         (pages / name).write_text(text, encoding="utf-8")
     shutil.copy(ROOT / "LICENSE", pages / "LICENSE.txt")
     shutil.copy(ROOT / "CITATION.cff", pages)
-    shutil.copy(HERE / "site.css", pages)
+    for name in ("site.css", "frame_worker.js"):
+        shutil.copy(HERE / name, pages)
     for page in pages.rglob("*.md"):
         text = page.read_text(encoding="utf-8")
         up = "../" * (len(page.relative_to(pages).parts) - 1)
