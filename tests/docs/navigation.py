@@ -16,7 +16,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
 OTHER = {"CONTRIBUTING.md", "CHANGELOG.md"}  # of the root of the repository
 ENTRY = re.compile(r"^ +- (?:[^:\n]+: )?([\w/]+\.md|\w+/\*)$", re.MULTILINE)
-CODE = re.compile(r"^```.*?^```|`[^`\n]*`|^ {4}.*$", re.DOTALL | re.MULTILINE)
+CODE = re.compile(r"^```.*?^```|`[^`\n]*`|^ {4}[^\n]*$", re.DOTALL | re.MULTILINE)
 
 
 def listed():
