@@ -14,7 +14,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
-OTHER = {"CONTRIBUTING.md", "CHANGELOG.md"}  # of the root of the repository
+OTHER = {"CONTRIBUTING.md", "CHANGELOG.md", "CODE_OF_CONDUCT.md", "SECURITY.md"}  # of the root of the repository
 ENTRY = re.compile(r"^ +- (?:[^:\n]+: )?([\w/]+\.md|\w+/\*)$", re.MULTILINE)
 CODE = re.compile(r"^```.*?^```|`[^`\n]*`|^ {4}[^\n]*$", re.DOTALL | re.MULTILINE)
 

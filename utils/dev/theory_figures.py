@@ -36,7 +36,8 @@ def text(x, y, words, colour=BLACK, anchor="start"):
 def picture(width, height, parts):
     """Return the file of a picture on white."""
     heads = "".join(f'<marker id="{colour[1:]}" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="7" markerHeight="7" '
-                    f'orient="auto"><path d="M0,0 L8,4 L0,8 z" fill="{colour}"/></marker>' for colour in (BLACK, BLUE, RED))
+                    f'orient="auto"><path d="M0,0 L8,4 L0,8 z" fill="{colour}"/></marker>'
+                    for colour in (BLACK, BLUE, RED))
     return "\n".join([f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" '
                       f'height="{height}" font-family="sans-serif" font-size="13">', f"<defs>{heads}</defs>",
                       '<rect width="100%" height="100%" fill="white"/>', *parts, "</svg>"]) + "\n"
@@ -53,14 +54,14 @@ def box(place, size, thickness):
 
 def elements():
     """Return the sketch of hex8 and solid_shell."""
-    gauss = 0.577
+    gauss = (-0.577, 0.577)
     parts, at = box((135, 115), 130, 90)
-    parts += [dot(*at(xi, eta, zeta), BLUE) for xi in (-gauss, gauss) for eta in (-gauss, gauss) for zeta in (-gauss, gauss)]
+    parts += [dot(*at(xi, eta, zeta), BLUE) for xi in gauss for eta in gauss for zeta in gauss]
     parts += [text(135, 225, "hex8", anchor="middle")]
     thin, at = box((430, 115), 190, 50)
     parts += thin
-    for xi in (-gauss, gauss):
-        for eta in (-gauss, gauss):
+    for xi in gauss:
+        for eta in gauss:
             parts += [dot(*at(xi, eta, 0.9 * zeta / 2), BLUE, 2.5) for zeta in (-2, -1, 0, 1, 2)]
     for xi, eta in ((-1, -1), (1, -1), (1, 1), (-1, 1)):
         parts.append(arrow(at(xi, eta, -1), at(xi, eta, 1.9), RED))
@@ -107,17 +108,18 @@ def increment():
     start, trial, part = 50, 260, 150
     slope = (equilibrium(start + 1) - equilibrium(start - 1)) / 2
     predicted = equilibrium(start) + slope * part
+    committed = (left + start, equilibrium(start))
+    tried = (left + start + trial, equilibrium(start) + slope * trial)
+    reached, final = left + start + part, equilibrium(start + part)
     parts = [arrow((left, bottom), (left + 460, bottom)), arrow((left, bottom), (left, 15)), line(curve, BLACK, 2)]
-    parts += [line([(left + start, equilibrium(start)), (left + start + trial, equilibrium(start) + slope * trial)], BLUE,
-                   1.5, 'stroke-dasharray="5 3"'),
-              arrow((left + start, equilibrium(start)), (left + start + part, predicted), BLUE),
-              arrow((left + start + part, predicted), (left + start + part, equilibrium(start + part) - 4), RED),
-              dot(left + start, equilibrium(start), BLACK, 4), dot(left + start + part, equilibrium(start + part), BLACK, 4)]
-    parts += [text(left + start + 6, equilibrium(start) + 20, "committed state N-1"),
-              text(left + start + part + 8, equilibrium(start + part) + 18, "state N: equilibrium"),
-              text(left + start + part - 12, predicted - 6, "predictor, r", BLUE, "end"),
-              text(left + start + part + 8, (predicted + equilibrium(start + part)) / 2 + 2, "corrector", RED),
-              text(left + start + trial + 4, equilibrium(start) + slope * trial + 14, "trial increment, r = 1", BLUE),
+    parts += [line([committed, tried], BLUE, 1.5, 'stroke-dasharray="5 3"'),
+              arrow(committed, (reached, predicted), BLUE), arrow((reached, predicted), (reached, final - 4), RED),
+              dot(*committed, BLACK, 4), dot(reached, final, BLACK, 4)]
+    parts += [text(committed[0] + 6, committed[1] + 20, "committed state N-1"),
+              text(reached + 8, final + 18, "state N: equilibrium"),
+              text(reached - 12, predicted - 6, "predictor, r", BLUE, "end"),
+              text(reached + 8, (predicted + final) / 2 + 2, "corrector", RED),
+              text(tried[0] + 4, tried[1] + 14, "trial increment, r = 1", BLUE),
               text(left + 455, bottom + 18, "travel of the tool", anchor="end"), text(left + 8, 22, "force")]
     return picture(620, 245, parts)
 

@@ -15,7 +15,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
-TOP = ["CONTRIBUTING.md", "CHANGELOG.md"]
+TOP = ["CONTRIBUTING.md", "CHANGELOG.md", "CODE_OF_CONDUCT.md", "SECURITY.md"]
 FORD = """project: dd3imp
 src_dir: {sources}
 output_dir: {output}
