@@ -15,7 +15,7 @@ from dd3.errors import Problem
 from dd3.run import Run
 
 __all__ = ["Problem", "Run", "open"]
-__version__ = "2.7.0"
+__version__ = "2.8.0"
 
 
 def open(folder: str | Path) -> Run:
