@@ -11,9 +11,11 @@ find_package(Threads REQUIRED)
 set(exported "${CMAKE_SOURCE_DIR}/src/library/exported.map")
 add_library(dd3laws SHARED src/library/umat.c)
 add_library(dd3imp::laws ALIAS dd3laws)
-set_target_properties(dd3laws PROPERTIES LINKER_LANGUAGE Fortran VERSION "${PROJECT_VERSION}"
-  SOVERSION "${PROJECT_VERSION_MAJOR}" EXPORT_NAME laws LINK_DEPENDS "${exported}" C_STANDARD 99
-  LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}")
+set_target_properties(dd3laws PROPERTIES LINKER_LANGUAGE Fortran EXPORT_NAME laws LINK_DEPENDS "${exported}"
+  C_STANDARD 99 LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}")
+if(NOT SKBUILD)  # a wheel has no links: each would be a copy
+  set_target_properties(dd3laws PROPERTIES VERSION "${PROJECT_VERSION}" SOVERSION "${PROJECT_VERSION_MAJOR}")
+endif()
 target_compile_options(dd3laws PRIVATE -Wall -Wextra -pedantic)
 target_link_options(dd3laws PRIVATE LINKER:--as-needed "LINKER:--version-script=${exported}")
 target_link_libraries(dd3laws PRIVATE "$<LINK_LIBRARY:WHOLE_ARCHIVE,dd3_library>" Threads::Threads)

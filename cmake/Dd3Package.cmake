@@ -22,21 +22,19 @@ list(REMOVE_ITEM folders app library)
 foreach(folder IN LISTS folders)
   target_sources(dd3imp_modules PRIVATE "$<TARGET_OBJECTS:dd3_${folder}>")
   install(DIRECTORY "${CMAKE_BINARY_DIR}/modules/${folder}/" DESTINATION "${module_folder}"
-    FILES_MATCHING PATTERN "*.mod")
+    COMPONENT development FILES_MATCHING PATTERN "*.mod")
 endforeach()
 
-install(FILES src/library/dd3laws.h DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+install(FILES src/library/dd3laws.h DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT laws)
+install(TARGETS dd3laws EXPORT dd3imp-laws COMPONENT laws)
+install(TARGETS dd3imp_modules EXPORT dd3imp-modules COMPONENT development)
 foreach(target IN ITEMS laws modules)
-  set(library dd3${target})
-  if(target STREQUAL modules)
-    set(library dd3imp_modules)
-  endif()
-  install(TARGETS ${library} EXPORT dd3imp-${target})
-  install(EXPORT dd3imp-${target} NAMESPACE dd3imp:: DESTINATION "${package}")
+  install(EXPORT dd3imp-${target} NAMESPACE dd3imp:: DESTINATION "${package}" COMPONENT development)
 endforeach()
 
 configure_package_config_file(cmake/dd3imp-config.cmake.in "${CMAKE_BINARY_DIR}/dd3imp-config.cmake"
   INSTALL_DESTINATION "${package}")
 write_basic_package_version_file("${CMAKE_BINARY_DIR}/dd3imp-config-version.cmake" COMPATIBILITY SameMajorVersion)
 install(FILES "${CMAKE_BINARY_DIR}/dd3imp-config.cmake" "${CMAKE_BINARY_DIR}/dd3imp-config-version.cmake"
-  cmake/FindSuiteSparse.cmake cmake/FindMUMPS.cmake cmake/FindMETIS.cmake DESTINATION "${package}")
+  cmake/FindSuiteSparse.cmake cmake/FindMUMPS.cmake cmake/FindMETIS.cmake DESTINATION "${package}"
+  COMPONENT development)

@@ -5,12 +5,13 @@
 #
 #   utils/install_needed.sh              all of it
 #   utils/install_needed.sh --no-python  without .venv
+#   utils/install_needed.sh --browser    also chromium, in which the test utils_browser opens a page of `dd3 report`
 #   utils/install_needed.sh --help       this text; nothing is installed
 set -euo pipefail
 cd -P "$(dirname "$0")/.."
 usage() { sed -n '2,/^set/{/SPDX/d;/^#/s/^# \{0,1\}//p}' utils/install_needed.sh; }
 case "$*" in
-  "" | --no-python) ;;
+  "" | --no-python | --browser) ;;
   --help | -h) usage; exit ;;
   *)
     usage >&2
@@ -21,6 +22,8 @@ esac
 packages=(gfortran gcc libc6-dev cmake ninja-build pkg-config libopenblas-dev libsuitesparse-dev libmetis-dev
   libhdf5-dev python3 python3-venv python3-pip libegl1 libgl1 libgl1-mesa-dri libglu1-mesa libxcursor1 libxft2
   libxinerama1 libxrender1)
+
+[ "${1:-}" != --browser ] || packages+=(chromium)
 
 install_packages() {
   if ! command -v dpkg-query >/dev/null; then
@@ -46,17 +49,18 @@ install_packages() {
     "${missing[@]}" >/dev/null
 }
 
-# The package is installed such that changes of its sources need no further installation; the environment is created
-# again if its requirements have changed.
+# What the package needs is installed, with its commands, and the sources are put on the path of Python: their changes
+# need no further installation. The environment is created again if the requirements have changed.
 install_python() {
   local python=/usr/bin/python3 wanted
   [ -x "$python" ] || python=python3
-  wanted=$(cksum <utils/pyproject.toml)
+  wanted=$(cksum <pyproject.toml)
   [ "$(cat .venv/pyproject.cksum 2>/dev/null)" = "$wanted" ] && return 0
-  echo "== installing the Python package utils/dd3 into .venv"
+  echo "== installing what the Python package utils/dd3 needs into .venv"
   rm -rf .venv
   "$python" -m venv .venv
-  .venv/bin/pip install -q --disable-pip-version-check --editable "./utils[test]"
+  DD3_CLONE=1 .venv/bin/pip install -q --disable-pip-version-check ".[test]"
+  echo "$PWD/utils" >"$(.venv/bin/python3 -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/dd3.pth"
   echo "$wanted" >.venv/pyproject.cksum
 }
 

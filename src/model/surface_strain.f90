@@ -184,7 +184,8 @@ contains
     real(wp), intent(out) :: mean, radius
 
     mean = 0.5_wp*(c(1, 1) + c(2, 2))
-    radius = hypot(0.5_wp*(c(1, 1) - c(2, 2)), 0.5_wp*(c(1, 2) + c(2, 1)))
+    ! With hypot, the program would need the C library of 2022 (glibc 2.35).
+    radius = norm2(0.5_wp*[c(1, 1) - c(2, 2), c(1, 2) + c(2, 1)])
   end subroutine mean_and_radius
 
   !> Return the principal values of a strain tensor in the plane of a normal, the major one first.

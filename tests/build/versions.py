@@ -12,6 +12,7 @@ PLACES = {
     "CITATION.cff": r"(?m)^version: (\S+)",
     "utils/dd3/__init__.py": r'__version__ = "(.+)"',
     "utils/packaging/README.md": r"dd3imp@(\S+)",
+    "utils/packaging/conda/meta.yaml": r'version: "(.+)"',
     "utils/packaging/spack/spack_repo/dd3imp/packages/dd3imp/package.py": r'version\("(.+)"\)',
 }
 

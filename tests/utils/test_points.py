@@ -63,7 +63,7 @@ def test_pictures(program, files):
     assert picture.read_bytes()[:4] == b"\x89PNG"
     figure = point.picture(sheets, program)
     tension, r_values, stresses, surface = figure.axes
-    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    labels = [text.get_text() for text in figure.axes[-1].get_legend().get_texts()]
     assert labels == ["steel", "round"], labels
     assert (len(tension.lines), len(r_values.lines), len(stresses.lines)) == (6, 2, 2)
     assert len(surface.lines) == len(surface.collections) == 2

@@ -66,7 +66,7 @@ def pieces_of_dxf(path: Path, chord: float, layer: str | None, sampled: Sampled,
     try:
         walk(drawing, document.modelspace(), None, None, inserted, ())
         others(drawing, document, inserted)
-    except Problem:
+    except (Problem, ImportError):
         raise
     except Exception as error:  # ezdxf raises many kinds on damaged files
         raise Problem(f"{path}: a damaged DXF file: {type(error).__name__}: {error}") from None

@@ -35,7 +35,7 @@ from dd3 import report as pages
 from dd3 import verdict
 from dd3.command import new_parser
 from dd3.errors import Problem
-from dd3.programs import command, find_program, launch, made_folder
+from dd3.programs import add_program, command, find_program, launch, made_folder
 from dd3.run import read_job
 
 STAMP = "operation.json"  # in the folder of an operation: what it has read
@@ -241,7 +241,7 @@ def process_parser(name: str, text: str | None) -> argparse.ArgumentParser:
     """Return the parser of a command that runs a process."""
     parser = new_parser(name, text)
     parser.add_argument("file", type=Path, metavar="FILE", help="file of the process, .toml")
-    parser.add_argument("--program", default="build/release/dd3imp", help="the program (build/release/dd3imp)")
+    add_program(parser)
     parser.add_argument("--threads", type=int, help="threads of a run (default: all cores)")
     parser.add_argument("--report", action="store_true", help="write one report of all operations")
     return parser

@@ -3,7 +3,6 @@
 
 import argparse
 import os
-import resource
 import shutil
 import signal
 import subprocess
@@ -13,11 +12,15 @@ import time
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from dd3 import places
 from dd3.errors import Problem
 from dd3.run import read_job
 from dd3.tables import read_points
+
+if TYPE_CHECKING:
+    import resource
 
 # Environment of mpirun, which refuses root, and more processes than processors, unless it is asked not to.
 MPI_ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
@@ -54,6 +57,12 @@ def find_program(path: str | Path) -> Path:
     if not found:
         raise Problem(f"{path}: no such program; give --program FILE")
     return Path(found).resolve()
+
+
+def add_program(parser: argparse.ArgumentParser) -> None:
+    """Add the option --program: by default the program that belongs to this package, else the one on the path."""
+    parser.add_argument("--program", default=places.program(), metavar="FILE",
+                        help="the program (default: dd3imp as `dd3 info` shows it)")
 
 
 def made_folder(path: str | Path) -> Path:
@@ -108,7 +117,7 @@ def launch(words: Sequence[str | Path], timeout: float | None = None, folder: st
     return Finished(child.returncode, said[0], said[1], wall, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024)
 
 
-def wait(child: "subprocess.Popen[bytes]", timeout: float | None) -> resource.struct_rusage:
+def wait(child: "subprocess.Popen[bytes]", timeout: float | None) -> "resource.struct_rusage":
     """Wait for a process and return its use of resources; kill it after `timeout` seconds or on an interrupt."""
     late, shown = threading.Event(), " ".join(map(str, child.args)) if isinstance(child.args, list) else str(child.args)
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A run of dd3imp by its folder: tables, fields, and the description of the job."""
 
-import fcntl
 import json
 from functools import cached_property
 from pathlib import Path
@@ -9,6 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 from dd3.errors import Problem
 from dd3.tables import is_whole, read_table, read_text, table_file
+
+try:
+    import fcntl
+except ModuleNotFoundError:  # Windows
+    fcntl = None  # type: ignore[assignment]
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -95,6 +99,8 @@ def read_job(folder: Path) -> dict[str, Any]:
 
 def is_held(path: Path) -> bool:
     """Tell whether a program may write a file: it holds a lock on it, or that cannot be found out."""
+    if fcntl is None:
+        return path.is_file()
     try:
         with path.open("rb") as file:
             fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)

@@ -36,6 +36,7 @@ from dd3.identify.hardening import BACKSTRESSES, LAWS, hardening
 from dd3.identify.least_squares import UNIT, NoStart, Points
 from dd3.identify.measurements import KEYS, TENSION, Datum, from_argument, read_data
 from dd3.plot.figures import save
+from dd3.programs import add_program
 
 
 def folded(key: str, text: str) -> list[str]:
@@ -84,7 +85,7 @@ def add_curve(parser: argparse.ArgumentParser) -> None:
     add("--poisson", type=float, default=0.3, help="Poisson's ratio (0.3)")
     add("--starts", type=int, default=4, help="number of starts: the first from isotropy, the others at random (4)")
     add("--seed", type=int, default=1, help="seed of the random starts (1)")
-    add("--program", default="dd3imp", help="the program dd3imp (default: the one on the path)")
+    add_program(parser)
     add("--output", metavar="FILE", help="file to write (default: NAME.dat)")
     add("--plot", metavar="FILE", help="picture to draw: measured values and identified curves")
 

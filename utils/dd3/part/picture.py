@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from dd3 import rendering
 from dd3.errors import Problem
 from dd3.part.rays import Rays
 from dd3.part.reading import Reading
@@ -24,12 +25,9 @@ def draw(reading: Reading, path: Path) -> None:
     """Write the picture: faces by their draft, walls yellow and level ones blue, undercut ones red, rims grey; edges of
     faults thick and red, with their numbers, and those of holes and notches green. No display is needed."""
     import pyvista as pv
-    from vtkmodules.vtkCommonCore import vtkLogger
-    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
-    pv.OFF_SCREEN = True
     shape, rays = reading.shape, Rays(reading.shape)
     up = reading.direction.vector if reading.direction else np.array([0.0, 0.0, 1.0])
-    plotter: Any = pv.Plotter(off_screen=True, shape=(1, 2), window_size=[1800, 900], border=False)
+    plotter = rendering.new_plotter(shape=(1, 2), window_size=[1800, 900], border=False)
     cells = np.insert(shape.triangles, 0, 3, axis=1).ravel()
     mesh = pv.PolyData(shape.nodes, cells)
     mesh.cell_data["colour"] = colours(reading)

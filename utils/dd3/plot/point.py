@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draw the response of materials at a point: tension curves, r-values and yield stresses by angle, yield surfaces.
 
-    dd3 plot point steel.dat aluminium.dat --program build/release/dd3imp --output materials.png
+    dd3 plot point steel.dat aluminium.dat --output materials.png
     dd3 plot point sheets.dat:dc06 sheets.dat:dp600
     dd3 plot point --run point.out --run other.out
 
@@ -25,7 +25,7 @@ from matplotlib.figure import Figure
 from dd3.command import new_parser
 from dd3.errors import Problem
 from dd3.plot.figures import new_figure, save
-from dd3.programs import POINTS, run_points
+from dd3.programs import POINTS, add_program, run_points
 from dd3.progress import each
 from dd3.tables import label_of, read_points, read_text
 
@@ -174,7 +174,8 @@ def picture(files: Sequence[str | Path], program: str | Path, strain: float = 0.
     for part in axes:
         part.grid(alpha=0.3)
     handles, names = axes[0].get_legend_handles_labels()
-    figure.legend(handles, names, fontsize="small", loc="outside right upper", frameon=False)
+    # Beside the last axes; matplotlib 3.6 has no legends outside.
+    axes[-1].legend(handles, names, fontsize="small", loc="upper left", bbox_to_anchor=(1.02, 1.0), frameon=False)
     return figure
 
 
@@ -188,7 +189,7 @@ def main(words: Sequence[str] | None = None) -> None:
     parser = new_parser("plot point", __doc__)
     parser.add_argument("file", nargs="*", help="file with *MATERIAL blocks, or FILE:NAME")
     parser.add_argument("--run", action="append", default=[], help="finished run to draw; may be repeated")
-    parser.add_argument("--program", default="dd3imp", help="the program dd3imp (default: the one on the path)")
+    add_program(parser)
     parser.add_argument("--strain", type=float, default=0.2, help="strain of the tension curves (0.2)")
     parser.add_argument("--output", default="materials.png", help="picture (materials.png)")
     parser.add_argument("--dpi", type=int, default=100, help="dots per inch (100)")

@@ -4,7 +4,7 @@
     dd3 plot sheet bending.out
     dd3 plot sheet bending.out --at 10 --at 40 --field stress:11 --view front --mirror x
     dd3 plot sheet cup.out --field level --hide all             # elements by how often they have been divided
-    dd3 plot sheet bending.dat --program build/release/dd3imp   # before a run
+    dd3 plot sheet bending.dat                                 # before a run
 
 The sheet and the tools' displacements are read from fields.vtkhdf, their surfaces from the .bez files that
 the run used; for files that were moved since give --tool. Several --at give several pictures below each other. Of an
@@ -24,15 +24,15 @@ from typing import Any, NamedTuple
 import matplotlib
 import numpy as np
 import pyvista as pv
-from vtkmodules.vtkCommonCore import vtkLogger
 
+from dd3 import rendering
 from dd3.bound import closed_skin
 from dd3.command import new_parser
 from dd3.errors import Problem
 from dd3.fields import AT, Fields, text_of
 from dd3.plot import levels
 from dd3.plot.beads import draw_beads
-from dd3.programs import command, find_program, launch, setting
+from dd3.programs import add_program, command, find_program, launch, setting
 from dd3.progress import each
 from dd3.run import file_of, read_job
 from dd3.sheet import AXES
@@ -111,9 +111,10 @@ def bernstein(degree: int, t: np.ndarray) -> np.ndarray:
     return np.array([math.comb(degree, i) * t**i * (1 - t) ** (degree - i) for i in range(degree + 1)])
 
 
-def tool_surface(patches: Patches, placement: Placement) -> tuple[pv.PolyData, pv.PolyData]:
-    """Return the surface of a tool at its place, and the edges of its patches; of many patches its outer edges."""
-    finest = max(2, min(24, round(math.sqrt(POINTS / len(patches)))))
+def tool_surface(patches: Patches, placement: Placement, count: int = POINTS) -> tuple[pv.PolyData, pv.PolyData]:
+    """Return the surface of a tool at its place, of about `count` points, and the edges of its patches; of many patches
+    its outer edges."""
+    finest = max(2, min(24, round(math.sqrt(count / len(patches)))))
     points, faces, lines, first = [], [], [], 0
     for shape in {weights.shape for _, weights in patches}:
         alike = [patch for patch in patches if patch[1].shape == shape]
@@ -243,8 +244,7 @@ def command_line() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
     parser = new_parser("plot sheet", __doc__)
     parser.add_argument("run", metavar="RUN", help="folder of results, its fields.vtkhdf, or an input file")
-    parser.add_argument("--program", type=Path, default=Path("dd3imp"),
-                        help="the program, for an input file (default: the one on the path)")
+    add_program(parser)
     parser.add_argument("--set", action="append", type=setting, default=[], metavar="NAME=VALUE",
                         help="parameter of an input file")
     parser.add_argument("--at", action="append", metavar="PLACE", help=AT + "; may be repeated")
@@ -349,12 +349,10 @@ def limits_of(run: Run, steps: Sequence[int], options: argparse.Namespace) -> Se
 
 def new_plotter(options: argparse.Namespace, count: int) -> Any:
     """Return the plotter of `count` pictures and the strip of the colour bar."""
-    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
-    pv.OFF_SCREEN = True
     window = [options.size[0], options.size[1] * count]
     bar = min(BAR_HEIGHT, window[1] / 2)
-    plotter: Any = pv.Plotter(shape=(count + 1, 1), row_weights=[(window[1] - bar) / count] * count + [bar],
-                         off_screen=True, border=False, window_size=window)
+    plotter = rendering.new_plotter(shape=(count + 1, 1), row_weights=[(window[1] - bar) / count] * count + [bar],
+                                    border=False, window_size=window)
     plotter.set_background("white")
     plotter.enable_anti_aliasing("ssaa")
     return plotter

@@ -5,9 +5,8 @@
     dd3 study case b-1e3          run a case, unless it is done, in bending_study.out/b-1e3/
     dd3 study table               gather the finished cases in bending_study.out/results.csv
 
-A case is a row of input_files/bending_study/cases.csv; call the command in the project's folder, or give --cases. Its
-columns other than `case` and `set` are parameters of study.dat in the same folder; an empty cell keeps the default of
-study.dat. A case is done when its folder has a done.json: exit code 0 means that the run reached its end, 3 that it
+A case is a row of bending_study/cases.csv of the examples, or of --cases. Its columns other than `case` and `set` are
+parameters of study.dat in the same folder; an empty cell keeps the default of study.dat. A case is done when its folder has a done.json: exit code 0 means that the run reached its end, 3 that it
 stopped before. Both are results.
 """
 
@@ -21,7 +20,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from dd3 import programs
+from dd3 import places, programs
 from dd3.command import new_parser
 from dd3.errors import Problem
 from dd3.study.runs import NOTE, punch_curve, run_once
@@ -46,13 +45,14 @@ def arguments(step: str, words: Sequence[str]) -> argparse.Namespace:
     else:
         parser.add_argument("case", help="name of a case")
         parser.add_argument("--sets", nargs="*", help="sets that the display counts (default: all)")
-    parser.add_argument("--program", type=Path, default=Path("build/release/dd3imp"), help="the program dd3imp")
-    parser.add_argument("--cases", type=Path, default=Path("input_files/bending_study/cases.csv"),
-                        help="table of the cases")
+    programs.add_program(parser)
+    parser.add_argument("--cases", type=Path, help="table of the cases (bending_study/cases.csv of the examples)")
     parser.add_argument("--work", type=Path, default=Path("bending_study.out"), help="folder of all results")
     options = parser.parse_args(words)
-    for name in ("program", "cases", "work"):
-        setattr(options, name, getattr(options, name).resolve())
+    options.cases = (options.cases or places.examples() / "bending_study" / "cases.csv").resolve()
+    options.work = options.work.resolve()
+    if step != "table":
+        options.program = programs.find_program(options.program)
     return options
 
 
@@ -112,7 +112,6 @@ def run_case(words: Sequence[str]) -> None:
     options = arguments("case", words)
     cases = read_cases(options.cases)
     row = row_of(cases, options)
-    programs.find_program(options.program)
     folder = options.work / options.case
     note = folder / NOTE
     call, deck = command(row, options, folder), digest(*deck_files(options))

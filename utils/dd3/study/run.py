@@ -6,12 +6,11 @@
     dd3 study run --sets "fig3 fig6"     selected sets of cases
     dd3 study run -- --profile utils/dd3/study/slurm        options of snakemake after --, such as --dry-run
 
-Call it in the project's folder, or give --cases. All cores are used. After an interruption the same command continues;
-finished cases are not repeated. `pip install --editable "./utils[study]"` installs snakemake, the workflow engine.
+All cores are used. After an interruption the same command continues;
+finished cases are not repeated. `pip install "dd3imp[study]"` installs snakemake, the workflow engine.
 """
 
 import argparse
-import fcntl
 import importlib.util
 import re
 import subprocess
@@ -19,9 +18,10 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from dd3 import places
 from dd3.command import new_parser
-from dd3.errors import Problem
-from dd3.programs import find_program, made_folder
+from dd3.errors import Problem, missing
+from dd3.programs import add_program, find_program, made_folder
 from dd3.study.runs import NOTE
 
 
@@ -39,15 +39,16 @@ def main(words: Sequence[str] | None = None) -> None:
     parser.add_argument("--sets", default="", help="sets of cases, separated by blanks (default: all)")
     parser.add_argument("--cores", type=cores, default="all", help="runs at a time (default: the number of cores)")
     parser.add_argument("--work", type=Path, help="folder of the results (bending_study.out, bending_study_quick.out)")
-    parser.add_argument("--program", default="build/release/dd3imp", help="the program (build/release/dd3imp)")
-    parser.add_argument("--cases", type=Path, help="table of the cases (input_files/bending_study/cases.csv)")
+    add_program(parser)
+    parser.add_argument("--cases", type=Path, help="table of the cases (bending_study/cases.csv of the examples)")
     parser.add_argument("options", nargs="*", metavar="-- OPTION", help="further options of snakemake")
     options = parser.parse_args(words)
+    import fcntl
     program = find_program(options.program)
     if importlib.util.find_spec("snakemake") is None:
-        raise Problem('snakemake is missing: pip install --editable "./utils[study]"')
+        raise Problem(missing("snakemake"))
     name = "quick" if options.quick else "cases"
-    cases = options.cases or Path(f"input_files/bending_study/{name}.csv")
+    cases = options.cases or places.examples() / "bending_study" / f"{name}.csv"
     work = made_folder(options.work or ("bending_study_quick.out" if options.quick else "bending_study.out"))
     settings = [f"program={program}", f"cases={cases.resolve()}", f"sets={options.sets}"]
     with (work / ".lock").open("w") as lock:

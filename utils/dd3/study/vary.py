@@ -34,11 +34,12 @@ from pathlib import Path
 
 import numpy as np
 
+from dd3 import errors
 from dd3.command import new_parser
 from dd3.errors import Problem
 from dd3.fields import Fields
 from dd3.plot.figures import new_figure, save
-from dd3.programs import command, find_program, launch, made_folder
+from dd3.programs import add_program, command, find_program, launch, made_folder
 from dd3.progress import counter
 from dd3.run import read_frame, read_job
 from dd3.study import response
@@ -167,7 +168,7 @@ def run_all(cases: list[Case], options: argparse.Namespace) -> None:
 def run_by_snakemake(cases: list[Case], options: argparse.Namespace, work: Path, words: Sequence[str]) -> None:
     """Run the cases by snakemake, with further options of it."""
     if importlib.util.find_spec("snakemake") is None:
-        raise Problem('snakemake is missing: pip install "./utils[study]"')
+        raise Problem(errors.missing("snakemake"))
     study = {"program": str(options.program), "deck": str(options.deck.resolve()),
              "cases": {case.folder.name: case.values for case in cases}}
     (work / STUDY).write_text(json.dumps(study, indent=1), encoding="utf-8")
@@ -294,7 +295,7 @@ def main(words: Sequence[str] | None = None) -> None:
     parser.add_argument("--result", nargs="+", type=result, default=[("tool_work", "")], metavar="NAME[:FOLD]",
                         help="column of history.csv or field, with :max, :min or :mean (tool_work)")
     parser.add_argument("--work", type=Path, help="folder of the study (default: the input file's name with .study)")
-    parser.add_argument("--program", type=find_program, default="dd3imp", help="the program dd3imp (on the path)")
+    add_program(parser)
     parser.add_argument("--cores", type=int, default=os.cpu_count() or 1, metavar="N",
                         help="runs at a time, each with one thread (default: the number of cores)")
     parser.add_argument("--indices", action="store_true", help="print the indices of Sobol")
@@ -302,6 +303,7 @@ def main(words: Sequence[str] | None = None) -> None:
     options = parser.parse_args(words)
     if options.cores < 1:
         parser.error("--cores takes a positive number")
+    options.program = find_program(options.program)
     if not options.deck.is_file():
         raise Problem(f"{options.deck}: no such file")
     work = made_folder(options.work or options.deck.with_suffix(".study"))

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from dd3 import rendering
 from dd3.errors import Problem
 from dd3.tools.joints import EDGES, Joints, box_of
 from dd3.tools.surface import Surface, areas_at, grid, points_at
@@ -67,10 +68,7 @@ def labels(surface: Surface) -> tuple[np.ndarray, list[str]]:
 def draw(surface: Surface, joints: Joints, path: Path) -> None:
     """Write the picture: faces in colours, free edges blue, those of more than two patches red, normals as arrows."""
     import pyvista as pv
-    from vtkmodules.vtkCommonCore import vtkLogger
-    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
-    pv.OFF_SCREEN = True
-    plotter: Any = pv.Plotter(off_screen=True, window_size=[1500, 1100])
+    plotter = rendering.new_plotter(window_size=[1500, 1100])
     plotter.set_background("white")
     plotter.enable_anti_aliasing("ssaa")
     faces = np.unique(surface.face)

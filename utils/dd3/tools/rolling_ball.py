@@ -10,7 +10,7 @@ the nodes beside it slide along the surface by a harmonic displacement. So do th
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array, diags_array
+from scipy.sparse import coo_array, dia_array
 from scipy.sparse.linalg import spsolve
 from scipy.spatial import cKDTree
 
@@ -103,7 +103,7 @@ def harmonic(point: np.ndarray, number: np.ndarray, held: np.ndarray, still: np.
     weight = 1 / np.maximum(length, 1e-6 * length.max())**2
     graph = coo_array((weight, pairs.T), shape=(len(point), len(point))).tocsr()
     graph = graph + graph.T
-    matrix = (diags_array(graph.sum(axis=1)) - graph).tocsr()
+    matrix = (dia_array((np.reshape(graph.sum(axis=1), (1, -1)), [0]), shape=graph.shape) - graph).tocsr()
     result = np.zeros_like(point)
     result[held] = given
     far = cKDTree(point[held]).query(point)[0] > REACH * np.linalg.norm(given, axis=1).max()

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Recipe of Spack for a clone, see utils/packaging/README.md."""
+"""Recipe of Spack for a clone or the source distribution, see utils/packaging/README.md."""
 
-from spack.package import depends_on, license, requires, variant, version
+import os
+
+from spack.package import default_args, depends_on, license, requires, variant, version, when
 from spack_repo.builtin.build_systems.cmake import CMakePackage, generator
 
 
@@ -16,6 +18,7 @@ class Dd3imp(CMakePackage):
     version("2.7.0")
 
     variant("mumps", default=False, description="Direct solver MUMPS, sequential")
+    variant("utilities", default=True, description="The command dd3 and its Python packages")
 
     depends_on("c", type="build")
     depends_on("fortran", type="build")
@@ -25,11 +28,27 @@ class Dd3imp(CMakePackage):
     depends_on("metis@5: ~int64")
     depends_on("hdf5+fortran+hl~mpi")
     depends_on("mumps~mpi", when="+mumps")
+    with when("+utilities"), default_args(type="run"):
+        depends_on("python@3.11:")
+        depends_on("py-h5py")
+        depends_on("py-matplotlib@3.6:")
+        depends_on("py-numpy@1.24:")
+        depends_on("py-pandas@1.5:")
+        depends_on("py-scipy@1.10:")
+        depends_on("py-tqdm")
 
     requires("%fortran=gcc@12:", msg="the options of the build are those of gfortran")
 
     generator("ninja")
 
+    def url_for_version(self, version):
+        """Return the place of the source distribution, in the folder that DD3IMP_ARCHIVES names."""
+        return f"file://{os.environ.get('DD3IMP_ARCHIVES', '.')}/dd3imp-{version}.tar.gz"
+
     def cmake_args(self):
         """Return the options of the configuration."""
         return [self.define("BUILD_TESTING", False), self.define_from_variant("DD3_MUMPS", "mumps")]
+
+    def setup_run_environment(self, env):
+        """Let Python find the package dd3."""
+        env.prepend_path("PYTHONPATH", self.prefix.share.dd3imp.python)
