@@ -21,6 +21,9 @@ module dd3_report_closing
   private
   public :: measure_closing
 
+  !> Least n.d of the normal of the punch and its path at which a sheet on a pad is pinched.
+  real(wp), parameter :: level = 0.87_wp
+
 contains
 
   !> Measure how far the sheet is formed at the end of the running phase. All ranks measure the
@@ -166,11 +169,31 @@ contains
       if (below >= huge(1.0_wp) .or. .not. are_parallel(normal(:, 1), normal(:, 2))) cycle
       if (off%distance > self%floor%distance .or. self%floor%node == 0) self%floor = off
       if (model%phase(state%phase)%pressed(t)) cycle
+      if (abs(dot_product(normal(:, 1), path%direction)) < level .and. &
+          has_pad(model, state, path, self%tool)) cycle
       left = above + below + thinned
       left = merge(left, 0.0_wp, left > 0.0_wp)
       if (self%bottom%node > 0 .and. left >= self%bottom%distance) cycle
       self%bottom = new_place(state, node(1), left, t)
     end do
   end subroutine measure_floor
+
+  !> Whether a pressed tool within the punch, in plan, holds the sheet against it. It yields: only
+  !> radii and walls are left between the punch and a die beside it, which do not end its path.
+  pure logical function has_pad(model, state, path, punch)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(path_t), intent(in) :: path
+    integer, intent(in) :: punch
+
+    integer :: t
+
+    has_pad = .false.
+    do t = 1, model%n_tool
+      if (.not. (model%phase(state%phase)%pressed(t) .and. state%tools%touches(t))) cycle
+      has_pad = has_pad .or. all(path%lower(:, t) > path%lower(:, punch) - model%thickness .and. &
+          path%upper(:, t) < path%upper(:, punch) + model%thickness)
+    end do
+  end function has_pad
 
 end module dd3_report_closing

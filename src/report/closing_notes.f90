@@ -32,7 +32,7 @@ contains
 
     beyond_holder = notable_beyond*model%thickness
     do i = 1, size(closing%punch)
-      if (closing%punch(i)%bottom%node > 0) &
+      if (closing%punch(i)%floor%node > 0) &
           call add_punch_note(model, state, closing%punch(i), notes)
     end do
     do i = 1, size(closing%holder)
@@ -71,9 +71,11 @@ contains
       is_open = punch%bottom%distance > open_path*model%thickness
       is_off = punch%floor%distance > off_tools*model%thickness
       if (.not. (is_open .or. is_off)) then
-        call notes%add_new("N107", "phase '"//phase//"': the sheet is formed to '"//name// &
-            "' and the tools across within "//to_text(punch%floor%distance, 2)//" mm; the path "// &
-            "left of '"//name//"' is "//to_text(punch%bottom%distance, 2)//" mm")
+        text = "phase '"//phase//"': the sheet is formed to '"//name// &
+            "' and the tools across within "//to_text(punch%floor%distance, 2)//" mm"
+        if (punch%bottom%node > 0) text = text//"; the path left of '"//name//"' is "// &
+            to_text(punch%bottom%distance, 2)//" mm"
+        call notes%add_new("N107", text)
         return
       end if
       text = "at the end of phase '"//phase//"' the sheet is not formed:"

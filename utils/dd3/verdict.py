@@ -63,13 +63,14 @@ def formed(phases: Sequence[Ended], waves: float | None) -> list[Item]:
     items = []
     for phase, punch in ends:
         left, off, wall = punch["path_left"], punch["off_tools"], punch["off_walls"]
-        if left is None:
+        if off is None:
             items.append(Item("formed to the tools", OPEN,
                               f"no tool is across from '{punch['tool']}' at the end of phase '{phase.phase}'"))
         else:
+            path = (f"; path left of '{punch['tool']}' before '{left['tool']}': {left['distance']:.2g} mm, {at(left)}"
+                    if left else "")
             items.append(Item("formed to the tools", BAD if "W119" in phase.codes else GOOD,
-                              f"within {off['distance']:.2g} mm, largest {at(off)}; path left of '{punch['tool']}' "
-                              f"before '{left['tool']}': {left['distance']:.2g} mm, {at(left)}"))
+                              f"within {off['distance']:.2g} mm, largest {at(off)}{path}"))
         if wall:
             answer = OPEN if waves is None else GOOD if 2 * wall["distance"] <= waves else DOUBTFUL
             items.append(Item("waves in walls", answer,
