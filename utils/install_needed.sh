@@ -5,12 +5,13 @@
 #
 #   utils/install_needed.sh              all of it
 #   utils/install_needed.sh --no-python  without .venv
+#   utils/install_needed.sh --browser    also chromium, in which the test utils_browser opens a page of `dd3 report`
 #   utils/install_needed.sh --help       this text; nothing is installed
 set -euo pipefail
 cd -P "$(dirname "$0")/.."
 usage() { sed -n '2,/^set/{/SPDX/d;/^#/s/^# \{0,1\}//p}' utils/install_needed.sh; }
 case "$*" in
-  "" | --no-python) ;;
+  "" | --no-python | --browser) ;;
   --help | -h) usage; exit ;;
   *)
     usage >&2
@@ -21,6 +22,8 @@ esac
 packages=(gfortran gcc libc6-dev cmake ninja-build pkg-config libopenblas-dev libsuitesparse-dev libmetis-dev
   libhdf5-dev python3 python3-venv python3-pip libegl1 libgl1 libgl1-mesa-dri libglu1-mesa libxcursor1 libxft2
   libxinerama1 libxrender1)
+
+[ "${1:-}" != --browser ] || packages+=(chromium)
 
 install_packages() {
   if ! command -v dpkg-query >/dev/null; then

@@ -99,7 +99,7 @@ finish() {
 }
 
 files_before=$(list_files)
-utils/install_needed.sh || { failed=1; finish; }
+utils/install_needed.sh --browser || { failed=1; finish; }
 build release && run_tests release
 build debug -DDD3_WARNINGS_ARE_ERRORS=ON && run_tests debug
 if pkg-config --exists PETSc; then

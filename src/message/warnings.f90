@@ -166,8 +166,8 @@ contains
           "A larger holder, or a smaller blank."), &
       row("W121", "support that carries a part of the tool force", &
           "A support at a few nodes, which are not all nodes of a plane, carries more than 1 % "// &
-          "of the largest force on a tool at the end of the phase: it shapes the sheet, which "// &
-          "it should only hold in its place.", "Supports at other nodes or in fewer "// &
+          "of the largest force on a tool at the end of the phase, and more than the weight of "// &
+          "the sheet: it shapes the sheet, which it should only hold in its place.", "Supports at other nodes or in fewer "// &
           "directions; none where tools and friction hold the sheet.")]
   end function run_warnings
 

@@ -97,7 +97,8 @@ contains
   end subroutine measure_holder
 
   !> Keep the distance of a node of the rim from a holder, if it lies outside of it: the holder is
-  !> in the direction of the inward normal of the rim.
+  !> in the direction of the inward normal of the rim, and no other tool on its side of the sheet,
+  !> which may form this rim, is nearer.
   pure subroutine measure_rim(beyond, model, state, path, tool, node)
     type(place_t), intent(inout) :: beyond
     type(model_t), intent(in) :: model
@@ -108,24 +109,26 @@ contains
     type(placement_t) :: placement
     type(hint_t) :: hint
     type(hit_t) :: hit
-    real(wp) :: to_holder(2), inward(2), at(2)
+    real(wp) :: to_holder(2), inward(2), at(2), to_other
     integer :: t
 
     if (.not. allocated(model%rim_normal)) return
     inward = across(path, model%rim_normal(:, node))
     if (norm2(inward) <= 0.0_wp) return
     at = across(path, state%x(:, node))
+    to_other = huge(1.0_wp)
     do t = 1, model%n_tool
       if (t == tool .or. .not. (path%acts(t) .and. model%member(t, node))) cycle
-      if (all(at >= path%lower(:, t) .and. at <= path%upper(:, t))) return
+      to_other = min(to_other, norm2(max(path%lower(:, t) - at, at - path%upper(:, t), 0.0_wp)))
     end do
+    if (to_other <= 0.0_wp) return
     call find_on_tool(model%tool(tool), state%placement(tool), state%x(:, node), hint, &
         model%tolerance%tool_search, depth*model%thickness_at(node), hit, path%normal(:, node))
     if (.not. hit%border) return
     placement = state%placement(tool)
     to_holder = across(path, placement%vector_to_global(hit%point) + placement%translation) - at
     if (dot_product(to_holder, inward) < inside*norm2(to_holder)*norm2(inward)) return
-    if (norm2(to_holder) <= beyond%distance) return
+    if (norm2(to_holder) <= beyond%distance .or. norm2(to_holder) > to_other) return
     beyond = new_place(state, node, norm2(to_holder), tool)
   end subroutine measure_rim
 

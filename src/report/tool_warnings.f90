@@ -67,7 +67,8 @@ contains
 
   end subroutine add_tool_warnings
 
-  !> Return a warning if a tool was moved or pressed in the phase and has never touched the sheet.
+  !> Return a warning if a tool was moved or pressed in the phase and has never touched the sheet,
+  !> unless it stands before the sheet, by less than its thickness, and the next phase presses it.
   function contact_warning(model, state, tool) result(text)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -86,6 +87,10 @@ contains
       hit = candidate_hits(model, tool, state%placement(tool), state%x, distance, distance)
     end associate
     nearest = nearest_candidate(model, hit%distance, abs(hit%distance), hit%found)
+    if (nearest%node > 0 .and. state%phase < size(model%phase)) then
+      if (model%phase(state%phase + 1)%pressed(tool) .and. nearest%distance >= 0.0_wp .and. &
+          nearest%distance < model%thickness) return
+    end if
     text = "tool '"//model%tool(tool)%name//"' moved without touching the sheet; at its end "
     if (nearest%node > 0) then
       text = text//"the nearest candidate, node "//to_text(nearest%node)//", is "// &

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 #: {"name": "answers"}
-"""Decks that earlier versions answered wrongly, and what the program answers: the table of docs/reports/answers.md.
+"""Input files that earlier versions handled wrongly, and the present answers: the table of docs/reports/answers.md.
 
     run.py --program build/release/dd3imp --work build/answers           compare with the table
     run.py --program build/release/dd3imp --work build/answers --write   write the table

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Check that the files named in README and CONTRIBUTING exist, scripts can be run, README names the folders of src."""
+"""Check that the files named in README and CONTRIBUTING exist, scripts can be run, all folders of src are named."""
 import pathlib
 import re
 import sys
@@ -24,9 +24,9 @@ def main():
                 wrong.append(f"{name}: {path} does not exist")
             elif target.suffix == ".sh" and not target.stat().st_mode & 0o100:
                 wrong.append(f"{name}: {path} is not executable")
-    tree = (ROOT / "README.md").read_text(encoding="utf-8").split("## The tree")[1]
+    tree = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8").split("## The tree")[1]
     folders = sorted(path.name for path in (ROOT / "src").iterdir() if path.is_dir())
-    wrong += [f"README.md: the tree lacks src/{folder}" for folder in folders if f"`src/{folder}`" not in tree]
+    wrong += [f"CONTRIBUTING.md: the tree lacks src/{folder}" for folder in folders if f"`src/{folder}`" not in tree]
     if wrong:
         sys.exit("\n".join(wrong))
 

@@ -56,6 +56,10 @@ def test_faces(folder, tmp_path, name):
     toward = (0, 0, -1) if PARTS[name].toward == (0, 0, -1) else (0, 0, 1)
     target = tmp_path / "tools"
     said = call("tool", folder / f"{name}.step", target, "--toward", *toward)
+    assert "not estimated" not in said
+    # While the holder closes the middle of the blank is held, and no longer.
+    deck = (target / "draw.dat").read_text(encoding="utf-8")
+    assert ("*PHASE close" in deck) == ("displace = middle x 0" in deck) == ("free = middle x y" in deck)
     travel = float(said.split("travel")[1].split()[0])
     reading, low, upper, role, lower = sampled(folder / f"{name}.step", toward)
     thickness = reading.sheet.thickness
@@ -125,5 +129,14 @@ def test_choices(folder, tmp_path):
     die, holder = read(tmp_path / "lower" / "die.bez"), read(tmp_path / "lower" / "holder.bez")
     # The part's own flange ends 54 mm from the middle; a blank as wide has a margin of the die and the holder.
     assert die[..., 0].max() > 56 and abs(die[..., 0].max() - holder[..., 0].max()) < 1e-6
-    assert "of what is seen of the tool are left out, faces 1-4 6" in call(
-        "tool", folder / "milled.step", tmp_path / "milled", "--thickness", 1, expect=2)
+    said = call("tool", folder / "milled.step", tmp_path / "milled", "--thickness", 1, expect=2)
+    assert "of what is seen of the block are left out, faces 3, as" in said, said
+    # Both ways out that the message names.
+    assert "tool.bez --toward 0 0 1 makes it of all faces" in said and "--faces 3 7-23 takes them too" in said, said
+    call("tool", folder / "milled.step", tmp_path / "tool.bez", "--toward", 0, 0, 1)
+    said = call("tool", folder / "milled.step", tmp_path / "milled", "--thickness", 1, "--faces", 3, "7-23")
+    assert "binder     level, on which the part's own flange lies" in said, said
+    assert "sharp edges rounded by 2.1 mm: 8" in said and "shoulder   of the part, radius 1.01 mm" in said, said
+    said = call("tool", folder / "crowned_block.step", tmp_path / "crowned", "--thickness", 1, expect=2)
+    assert "the sharp edges 1-2 4-5 7 10-12 17-18 20-21 cannot be rounded by up to 1 mm" in said, said
+    assert "some are shorter than the radius, 2 4 11 20, the shortest of 0.594 mm" in said, said

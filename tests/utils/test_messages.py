@@ -37,7 +37,7 @@ def test_messages(tmp_path, words, said):
 
 
 @pytest.mark.parametrize("script", ("first_run.sh", "run_tests.sh", "install_needed.sh", "dev/benchmark.py",
-                                    "dev/bending_tables.py"))
+                                    "dev/bending_tables.py", "dev/viewer_library.sh"))
 def test_scripts(script):
     """Check the help and the messages of the scripts."""
     first = [sys.executable] if script.endswith(".py") else ["bash"]

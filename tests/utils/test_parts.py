@@ -149,10 +149,52 @@ def test_tools(folder, tmp_path):
     assert said.count("folds      0") == 3 and "thickness = 0.9144" in (tmp_path / "inch" / "draw.dat").read_text()
     said = call("tool", folder / "tray.step", tmp_path / "tray", "--toward", 0, 0, 1, "--shoulder", 4, "--flange", 15)
     assert "turned" not in said and "drawing ratio" not in said, said
-    assert "the drawing ratio" in call("tool", folder / "cup_with_holes.step", tmp_path / "cup")
+    said = call("tool", folder / "cup_with_holes.step", tmp_path / "cup")
+    assert "shoulder of 4 mm and margin of 2 mm, as the drawing ratio is 2.1" in said and "warning" in said, said
+    said = call("tool", folder / "cup_with_holes.step", tmp_path / "cup", "--margin", 5)
+    assert "shoulder of 4 mm and margin of 5 mm" in said, said
     for name, reason in (("lipped_channel", "not in one stroke from any direction"),
                          ("plate", "nothing is to be formed"), ("s_rail", "give the thickness"),
                          ("two_angles", "2 parts"),
                          ("milled", "no two sides at one distance: give the thickness")):
         assert reason in call("tool", folder / f"{name}.step", tmp_path / name, expect=2)
         assert not (tmp_path / name / "punch.bez").exists()
+
+
+def read_made(folder, maker, **more):
+    """Return the reading of a part that a procedure makes."""
+    with session() as gmsh:
+        maker(gmsh.model.occ)
+        gmsh.model.occ.synchronize()
+        gmsh.write(str(folder / "part.step"))
+        gmsh.clear()
+        return read_part(gmsh, Request(folder / "part.step", **more))
+
+
+def test_flat_plates(tmp_path):
+    """Check that a plate with an arm as wide as it is thick, and one with countersinks on one side, are flat."""
+    def comb(occ):
+        plate = occ.addBox(0, 0, 0, 40, 12, 2)
+        occ.cut([(3, plate)], [(3, occ.addBox(x, 6, -1, 5, 10, 4)) for x in (10, 17)])
+
+    def countersunk(occ):
+        plate = occ.addBox(0, 0, 0, 40, 30, 3)
+        occ.cut([(3, plate)], [(3, occ.addCone(x, 15, 1.5, 0, 0, 2, 1, 4)) for x in (10, 30)])
+
+    for maker in (comb, countersunk):
+        reading = read_made(tmp_path, maker)
+        assert reading.flat and [fault.text for fault in reading.faults] == ["the part is flat: nothing is to be formed"]
+
+
+def test_bar(tmp_path):
+    """Check that a round bar is a block without walls."""
+    reading = read_made(tmp_path, lambda occ: occ.addCylinder(0, 0, 0, 0, 0, 80, 4))
+    assert reading.sheet.kind == "block" and not reading.sheet.walls
+
+
+def test_refused_direction(folder, tmp_path):
+    """Check that a refusal names faces, fraction and direction of one reading, the best one without --toward."""
+    said = call("part", folder / "lipped_channel.step", tmp_path, expect=2).split("error: ")[1]
+    assert said == call("tool", folder / "lipped_channel.step", tmp_path, expect=2).split("error: ")[1]
+    given = call("tool", folder / "lipped_channel.step", tmp_path, "--toward", 0, 1, 0, expect=2).split("error: ")[1]
+    assert "from +y they are" in given, given

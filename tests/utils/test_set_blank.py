@@ -33,8 +33,8 @@ def test_simplified():
 
 
 def test_bent_strip():
-    """Check the blank of a strip around a quarter of a cylinder with two legs: its developed length."""
-    radius, leg, width = 10.0, 30.0, 40.0
+    """Check the blank of a strip around a quarter of a cylinder with two legs: the developed length of its middle."""
+    radius, leg, width, thickness = 10.0, 30.0, 40.0, 2.0
     length = np.linspace(0, leg, 7)
     angle = np.linspace(0, np.pi / 2, 9)
     x = np.concatenate([-leg + length, radius * np.sin(angle[1:]), np.full(6, radius)])
@@ -43,8 +43,8 @@ def test_bent_strip():
     u, v = np.arange(0, len(x) - 2, 2), np.arange(0, len(y) - 2, 2)
     nodes = np.array([[[[x[j + b], y[i + a], z[j + b]] for b in range(3)] for a in range(3)] for i in v for j in u])
     surface = Surface(from_nodes(nodes), np.zeros(len(nodes), int), ["strip"])
-    blank = blank_of(Path("strip"), surface, 2.0)
-    developed = 2 * leg + radius * np.pi / 2
+    blank = blank_of(Path("strip"), surface, thickness, 2.0)
+    developed = 2 * leg + (radius + thickness / 2) * np.pi / 2
     assert np.sort(np.ptp(blank.box, axis=0)) == pytest.approx([width + 4, developed + 4], abs=0.5)
     assert not blank.cut
     assert blank.pressed(surface) == pytest.approx(width * (leg + radius), rel=1e-6)

@@ -198,7 +198,7 @@ def test_refusals(parts, tmp_path):
     target = tmp_path / "tools"
     assert "flat: nothing is to be formed" in made(parts, "flat", target, expect=2)
     said = made(parts, "hat", target, "--rotate", 1, 0, 0, 180, expect=2)
-    assert "no free edge of the part at which it climbs" in said and "open towards +z: --toward 0 0 1" in said, said
+    assert "no free edge of the part climbs" in said and "open towards +z: --toward 0 0 1" in said, said
     assert "with --thickness a folder" in made(parts, "hat", tmp_path / "die.bez", expect=2)
     assert "--toward and --rotate" in made(parts, "hat", target, "--toward", 0, 0, 1, "--rotate", 1, 0, 0, 9, expect=2)
     assert "--offset is for one tool" in made(parts, "hat", target, "--offset", 1, expect=2)

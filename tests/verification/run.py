@@ -32,29 +32,29 @@ SUMMARY = ["section", "values", "largest error, of its tolerance", "quantity"]
 FIXED = ["Summary", "Elements side by side"]
 START = """# Verification manual
 
-Cases with a closed form, an independent computation or a published figure: what is expected, what the program gives,
-and the error. Where a deviation has another cause than the mesh, the section says which. Each case is a folder with its
-input file; expected values are computed by scripts that do not use the program.
+Cases with a closed form, an independent computation or a published figure: expected value, computed value and error.
+Where a deviation is not due to the mesh, the section gives the cause. Each case is a folder with its input file;
+expected values are computed by scripts that do not use the program.
 
     tests/verification/run.py --program build/release/dd3imp --work build/verification --slow --write
 
 runs all cases and writes this page; without `--slow` the quick ones only, in about two minutes. The tests
 `verification` and `verification_slow` compare the page with the program: each error must be within the tolerance.
 
-The numbers are those of a list from which some cases went elsewhere: V3 is in unit tests, V26, V28 and V30 are the
-reports on the [square cup](reports/square_cup.md), the [round cup](reports/round_cup.md) and the
-[rail](reports/rail.md); V10, V12, V15, V17, V27 and V29 have never been given.
+Some numbers are not on this page: V3 is in unit tests, V26, V28 and V30 are the reports on the
+[square cup](reports/square_cup.md), the [round cup](reports/round_cup.md) and the [rail](reports/rail.md); V10, V12,
+V15, V17, V27 and V29 are not used.
 
-No section compares with an experiment. Measured values stand beside computed ones in the reports on the [split
+No section compares with an experiment. Comparisons with measured values are in the reports on the [split
 ring](reports/split_ring.md), for springback, the [cup of AA6016](reports/round_cup_aa6016.md) and the [square
 cup](reports/square_cup.md#the-aluminium-sheet).
 
-The times in the studies of refinement are those of one thread of a loaded machine: compare within a table. Unknowns are
-three for each node. The order is that of the error between a mesh and the coarser one above it.
+The times in the studies of refinement are those of one thread of a busy machine: compare within a table. There are
+three unknowns for each node. The order is that of the error between a mesh and the coarser one above it.
 """
 BESIDE = f"""Unknowns and seconds of the coarsest mesh of each element within {100 * ACCURATE:g} %, from the refinements
-below; none where the meshes tried do not reach it. No element is the best in all cases: `solid_shell` in the bending of
-sheets, `hex8` and the quadratic elements in the plastic flow of thick bodies, the quadratic ones where the stress is
+below; none if no mesh is within this error. No element is the best in all cases: `solid_shell` is best in the bending
+of sheets, `hex8` and the quadratic elements in the plastic flow of thick bodies, the quadratic ones where the stress is
 smooth.
 """
 

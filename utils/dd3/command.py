@@ -23,6 +23,8 @@ COMMANDS = {
     "compensate": ("dd3.compensate", "correct the tools of a process for springback"),
     "outline": ("dd3.outline", "find the outline of the blank that gives a wanted rim"),
     "report": ("dd3.report", "make a page about a forming run"),
+    "view": ("dd3.view", "open the page of a run in the browser, or the sheet in a window"),
+    "watch": ("dd3.watch", "watch a run in progress in the terminal"),
     "plot": ("draw results, materials, or the sheet before a run", "dd3 plot force bending.out", {
         "force": ("dd3.plot.force", "tool force against tool displacement"),
         "increments": ("dd3.plot.increments", "size of the increments and what limits it"),

@@ -38,7 +38,7 @@ from dd3.sheet import Sheet
 from dd3.surface_strain import cell_strains
 
 ZONES = ("no strain", "thickening", "safe", "marginal", "critical")
-COLOURS = ("#d0d4d8", "#5b8fd6", "#55a868", "#f0c040", "#d64541")
+COLOURS = ("#d0d4d8", "#56b4e9", "#009e73", "#f0e442", "#d55e00")  # safe for the colour-blind
 LEAST_STRAIN = 0.01  # major strain below which a point is not judged
 RIGHT_SLOPE = 0.6
 LARGEST_N = 0.21  # of the correlation

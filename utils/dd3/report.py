@@ -4,13 +4,16 @@
     dd3 report cup.out --mirror x y --low-carbon-steel
     dd3 report rail.out --mirror y --curve dc06.csv --section y=0 --section x=30 --output rail_report
     dd3 report cup.out --mirror x y --waves 0.2 --tolerance 0.5 --verdict
+    dd3 report cup.out --mirror x y --measured force.csv --measured thickness.csv
 
-The page begins with the verdict: whether the sheet is formed to the tools, its waves under the holder, splits,
-thinning, springback; --verdict prints it and ends with exit code 1 if something is not good. Then come the thinning,
-the deformed sheet between its tools, the forming limit diagram, thickness along sections, the outline before and
-after, the springback of a sheet that was released (its distance from the drawn shape, sections, angles, twist), the
-refinements and the final mesh where elements were divided in the run, for each phase the tools' motions and forces,
-what limited its increments and what warned, the statistics of the run, and the set-up. --mirror completes a model at
+The page is one file, which a browser shows without a network: the part in 3D with all fields at all steps, its tools,
+sections and forming limit diagram, and curves that tell their values under the mouse. It begins with the verdict:
+whether the sheet is formed to the tools, its waves under the holder, splits, thinning, springback; --verdict prints it
+and ends with exit code 1 if something is not good. Then come the thinning, the deformed sheet between its tools, the
+forming limit diagram, thickness along sections, the outline before and after, the springback of a sheet that was
+released (its distance from the drawn shape, sections, angles, twist), measured curves, the refinements and the final
+mesh where elements were divided in the run, for each phase the tools' motions and forces, what limited its increments
+and what warned, the statistics of the run, and the set-up. --mirror completes a model at
 its planes of symmetry; forces are multiplied accordingly. Forming limit curve and thinning limit are those of `dd3
 fld`; without a curve for the material it is not judged. The strains are those at the middle of the sheet.
 """
@@ -29,7 +32,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from dd3 import forming_limit, rendering, springback, verdict
+from dd3 import computed, forming_limit, measured, rendering, springback, verdict
 from dd3.account import Account
 from dd3.bound import closed_skin
 from dd3.command import new_parser
@@ -42,6 +45,8 @@ from dd3.run import read_frame
 from dd3.section import Section, in_plane
 from dd3.sheet import AXES, Sheet, plane
 from dd3.tables import tools_in
+from dd3.viewer import page as interactive
+from dd3.viewer.scene import Scene
 
 STYLE = """body{font:16px/1.5 system-ui,sans-serif;color:#222;background:#f4f5f7;margin:0}
 main{max-width:1100px;margin:0 auto;padding:1em 1.5em}h1{margin:.4em 0 0}h2{margin:0 0 .5em;font-size:1.2em}
@@ -102,10 +107,14 @@ class Report:
             return f"<p>No picture: {html.escape(str(problem))}.</p>"
         return self.image(name, alt)
 
-    def figure(self, name: str, figure: Figure, alt: str) -> str:
+    def saved(self, name: str, figure: Figure, alt: str) -> str:
         """Write a figure and return its element."""
         save(figure, self.pictures / f"{name}.png", 130)
         return self.image(name, alt)
+
+    def figure(self, name: str, figure: Figure, alt: str) -> str:
+        """Write a figure of curves and return its element, whose curves answer to the mouse."""
+        return interactive.chart(name, figure, self.saved(name, figure, alt))
 
     def sheet_options(self, name: str, *more: str) -> argparse.Namespace:
         """Return the options of a picture of the sheet."""
@@ -343,7 +352,7 @@ def add_limit_diagram(report: Report) -> None:
     zone, report.limits = forming_limit.draw(axes, strains, limits, report.options.margin)
     critical = None if zone is None else int((zone == forming_limit.ZONES.index("critical")).sum())
     report.splits = verdict.splits(critical, report.limits, strains.largest_thinning() > limits.thinning)
-    content = report.figure("limit", figure, "forming limit diagram")
+    content = report.saved("limit", figure, "forming limit diagram")  # that of the 3D view answers to the mouse
     content += "" if zone is None else zone_map(report, zone)
     said = [*report.limits, *(f"left out: {item}" for item in account.left_out())]
     content += "".join(f"<p>{html.escape(line[:1].upper() + line[1:])}.</p>" for line in said)
@@ -414,22 +423,55 @@ def add_sections(report: Report) -> None:
 def add_outline(report: Report) -> None:
     """Add the outline before and after, and the draw-in along it."""
     figure, (axes, along) = new_figure((11, 5), 1, 2)
-    start, now, value = report.sheet.start(report.last), report.sheet.points(report.last), report.field("draw_in")
+    start, now = report.sheet.start(report.last), report.sheet.points(report.last)
     for line in report.sheet.outline(True, report.options.mirror):
-        for points, colour, width in ((start, "0.5", 1), (now, "#d64541", 1.6)):
+        for points, colour, width in ((start, "0.5", 1), (now, "#d55e00", 1.6)):
             for part in springback.images(points[line], report.options.mirror):
                 axes.plot(part[:, 0], part[:, 1], color=colour, linewidth=width)
-        middle = (start.min(axis=0) + start.max(axis=0)) / 2
-        middle = [0.0 if axis in report.options.mirror else middle[i] for i, axis in enumerate(AXES)]
-        angle = np.degrees(np.unwrap(np.arctan2(start[line, 1] - middle[1], start[line, 0] - middle[0])))
-        along.plot(angle - 360 * np.floor(angle.min() / 360 + 1e-9), value[line], ".-", markersize=3)
+    for angle, value in computed.draw_in(report.sheet, report.options.mirror):
+        along.plot(angle, value, ".-", markersize=3)
     axes.set_aspect("equal", adjustable="datalim")
     axes.set(xlabel="x (mm)", ylabel="y (mm)")
-    axes.legend(handles=[Patch(color="0.5", label="before"), Patch(color="#d64541", label="after")], frameon=False)
+    axes.legend(handles=[Patch(color="0.5", label="before"), Patch(color="#d55e00", label="after")], frameon=False)
     along.set(xlabel="angle from x at the start (degrees)", ylabel="draw-in (mm)")
     for place in (axes, along):
         place.grid(True, color="0.9")
     report.add("Outline and draw-in", report.figure("outline", figure, "outline before and after, draw-in"))
+
+
+def add_measured(report: Report) -> None:
+    """Add the measured curves over the computed ones, with a table of their differences."""
+    curves = [curve for file in report.options.measured for curve in measured.read(file, report.tools)]
+    if not curves:
+        return
+    figure, axes = new_figure((8, 3.5 * len(curves)), len(curves), squeeze=False)
+    rows = []
+    for measure, place in zip(curves, axes[:, 0]):
+        at, values = computed.curve(measure, report.sheet, report.history, report.options.mirror)
+        found = (measured.from_line(measure, np.column_stack([at, values])) if measure.over == "along"
+                 else measured.along_curve(measure, at, values))
+        unit, scale = measured.shown_unit(measure)
+        over = "degrees" if measure.over == "angle" else "mm"
+        place.plot(at, values / scale, "-", color="#0072b2", label="computed")
+        place.plot(measure.at, measure.values / scale, "o", markersize=3, color="#d55e00",
+                   label=f"measured, {measure.file}")
+        place.set(xlabel=f"{measure.over} ({over})", ylabel=f"{measure.title()} ({unit})")
+        place.grid(True, color="0.9")
+        place.legend(frameon=False)
+        beyond = f"; {found.beyond} points beyond the computed curve are left out" if found.beyond else ""
+        rows.append((f"{measure.title()} ({measure.file})", f"{found.points} points; largest difference "
+                     f"{found.largest / scale:+.3g} {unit} at {measure.over} {found.where:.4g} {over}, rms "
+                     f"{found.rms / scale:.3g} {unit}{beyond}"))
+    report.add("Measured curves", report.figure("measured", figure, "measured and computed curves")
+               + "<p>Differences: measured less computed values; of the shape of a section distances from it, along "
+                 "its upper face.</p>" + table(rows))
+
+
+def add_view(report: Report) -> None:
+    """Add the part in 3D."""
+    limits = forming_limit.find_limits(report.sheet, report.job, report.options)
+    scene = Scene(report.sheet, report.run, report.options.mirror, limits, report.options.margin)
+    report.add("Part in 3D", interactive.view(scene))
 
 
 def add_pictures(report: Report) -> None:
@@ -477,15 +519,17 @@ def page(report: Report) -> str:
     images_of = f"; completed at the planes {', '.join(report.options.mirror)} = 0" if report.options.mirror else ""
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{title}</title><style>{STYLE}</style></head><body><main>
+<title>{title}</title><style>{STYLE}{interactive.own_file("viewer.css")}</style></head><body><main>
 <h1>{title}</h1><p>State: {report.run.state(report.last)}{images_of}.</p>
 {chr(10).join(report.parts)}
-</main></body></html>
+</main>
+{interactive.scripts()}
+</body></html>
 """
 
 
-STEPS = (add_pictures, add_limit_diagram, add_sections, add_outline, add_springback, add_refinements, add_phases,
-         add_beads, add_warnings, add_statistics, add_setup)
+STEPS = (add_view, add_pictures, add_limit_diagram, add_sections, add_outline, add_springback, add_measured,
+         add_refinements, add_phases, add_beads, add_warnings, add_statistics, add_setup)
 
 
 def write(options: argparse.Namespace) -> Report:
@@ -523,6 +567,9 @@ def report_of(words: Sequence[str] | None) -> Report:
     forming_limit.add_options(parser)
     parser.add_argument("--section", action="append", default=[], metavar="PLANE",
                         help="x=0, y=12.5 or an angle in degrees; may be repeated (default: through the middle)")
+    parser.add_argument("--measured", action="append", default=[], metavar="FILE",
+                        help="table of measured forces, draw-in, thickness or sections, with a heading that names its "
+                             "columns and their units; may be repeated")
     parser.add_argument("--waves", type=float, metavar="MM", help="largest height of waves under a holder and in walls")
     parser.add_argument("--tolerance", type=float, metavar="MM",
                         help="largest distance of the free shape from the drawn one")

@@ -17,7 +17,8 @@ import shlex
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +31,22 @@ from dd3.gmsh_session import session
 from dd3.part import setup, table
 from dd3.part.command import write_reading
 from dd3.progress import Progress
-from dd3.tools import cad, facets, mend, moved, picture, report, set_deck, sides, tool_set, trim_deck
+from dd3.sheet import Sheet
+from dd3.tools import (
+    beads,
+    cad,
+    facets,
+    mend,
+    moved,
+    pad_force,
+    picture,
+    report,
+    set_deck,
+    set_material,
+    sides,
+    tool_set,
+    trim_deck,
+)
 from dd3.tools.cad import SUFFIXES as CAD
 from dd3.tools.facet_files import SUFFIXES as FACETS
 from dd3.tools.facet_files import Facets
@@ -43,6 +59,7 @@ from dd3.tools.surface import Surface, turned, write
 RATIO = 2.0  # drawing ratio up to which mild steel is drawn in one stroke, about
 RADIUS = 0.2  # least radius of an offset, over its distance
 DRAW = "draw.dat"  # input file of a set of tools
+ESTIMATE = Path()  # what --beads is without a run
 # Largest distance of a surface from CAD, and estimated one of facets, mm.
 TOLERANCE = {"cad": 0.002, "facets": 0.02, "shape": 0.002}
 
@@ -209,17 +226,22 @@ def command_line() -> argparse.ArgumentParser:
     whole = parser.add_argument_group("punch, die and holder of a part of CAD, and an input file that draws it")
     whole.add_argument("--thickness", type=float, metavar="mm", help="of the sheet (that of the part)")
     whole.add_argument("--clearance", type=float, metavar="mm",
-                       help=f"of punch and die beyond the thickness ({tool_set.CLEARANCE:g} thicknesses)")
+                       help=f"of punch and die beyond the thickness ({tool_set.SIZES['clearance']:g} thicknesses)")
     whole.add_argument("--shoulder", type=float, metavar="mm",
-                       help=f"radius of the die's shoulder ({tool_set.SHOULDER:g} thicknesses)")
+                       help=f"radius of the die's shoulder ({tool_set.SIZES['shoulder']:g} thicknesses)")
     whole.add_argument("--flange", type=float, metavar="mm",
                        help="width of the die beyond the shoulder (as the blank needs)")
     whole.add_argument("--margin", type=float, metavar="mm",
-                       help=f"of the blank beyond the part, or the shoulder ({tool_set.MARGIN:g} thicknesses)")
+                       help=f"of the blank beyond the part, or the shoulder ({tool_set.SIZES['margin']:g} thicknesses)")
+    whole.add_argument("--beads", type=Path, nargs="?", const=ESTIMATE, metavar="RUN",
+                       help="propose draw-beads by the draw-in of the estimate of the blank, or of a finished run of "
+                            f"{DRAW}; the margin is then {beads.MARGIN:g} thicknesses")
     whole.add_argument("--program", metavar="FILE",
                        help="the program, which checks the input file (default: dd3imp as `dd3 info` shows it)")
     whole.add_argument("--side", choices=("punch", "die"), help="the tool that touches the faces (punch)")
-    whole.add_argument("--material", type=Path, metavar="FILE", help="file with a *MATERIAL for the input file")
+    whole.add_argument("--material", type=Path, metavar="FILE",
+                       help="file with a *MATERIAL for the input file, or the name of one of the library, such as dc06 "
+                            "(a mild steel)")
     return parser
 
 
@@ -250,12 +272,14 @@ def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
             parser.error(f"--{name} takes CAD: {' '.join(CAD)}")
     if options.smooth and not options.faces:
         parser.error("--smooth goes with --faces")
-    for name in ("clearance", "shoulder", "flange", "margin", "side", "material"):
+    for name in ("clearance", "shoulder", "flange", "margin", "side", "material", "beads"):
         if getattr(options, name) is not None and not options.whole:
             parser.error(f"--{name} goes with a folder, or --thickness")
     options.side = options.side or "punch"
     options.closed = options.taken = None
     options.curves, options.roles, options.angles, options.sharp, options.visible = [], {}, {}, {}, {}
+    options.seen = ""
+    options.holes = []
     if options.whole:
         check_set(parser, options)
     options.tolerance = options.tolerance or TOLERANCE[options.kind]
@@ -275,16 +299,44 @@ def check_set(parser: argparse.ArgumentParser, options: argparse.Namespace) -> N
         parser.error("--clearance takes a number that is not negative")
 
 
-def settle_set(options: argparse.Namespace) -> None:
-    """Set the sizes of a set of tools that were not given."""
+@contextmanager
+def about(path: Path) -> Iterator[None]:
+    """Let each error name a file."""
+    try:
+        yield
+    except Problem as problem:
+        text = str(problem)
+        raise Problem(text if text.startswith(str(path)) else f"{path}: {text}") from problem
+
+
+def tools_of(gmsh: Any, options: argparse.Namespace, progress: Progress) -> tuple[tool_set.ToolSet, argparse.Namespace]:
+    """Return the tools of a part and the options with all sizes; where the drawing ratio is too large, those with a
+    smaller shoulder and margin, as far as these were not given."""
+    settled = settle_set(options, tool_set.SIZES)
+    tools = tool_set.made(gmsh, settled, progress)
+    smaller = settle_set(options, tool_set.SIZES | tool_set.SMALLER)
+    if tools.ratio <= RATIO or vars(smaller) == vars(settled):
+        return tools, settled
+    again = tool_set.made(gmsh, smaller, progress)
+    if again.ratio >= tools.ratio:
+        return tools, settled
+    again.lines.append(("ratio", f"shoulder of {smaller.shoulder:.3g} mm and margin of {smaller.margin:.3g} mm, as the "
+                        f"drawing ratio is {tools.ratio:.3g} with {settled.shoulder:.3g} and {settled.margin:.3g} mm"))
+    return again, smaller
+
+
+def settle_set(options: argparse.Namespace, sizes: Mapping[str, float]) -> argparse.Namespace:
+    """Return the options with the sizes of a set of tools that were not given, from those over the thickness."""
+    options = argparse.Namespace(**vars(options))
     options.radius = options.radius or options.thickness
-    for name, factor in (("clearance", tool_set.CLEARANCE), ("shoulder", tool_set.SHOULDER),
-                         ("margin", tool_set.MARGIN)):
+    sizes = {**sizes, "margin": beads.MARGIN} if options.beads else sizes
+    for name, factor in sizes.items():
         if getattr(options, name) is None:
             setattr(options, name, factor * options.thickness)
     # The convex ones of a side are the larger by the gap, so that the tool on the other side has the radius there.
     gap = options.thickness + options.clearance
     options.sharp = {edge: options.radius + (gap if angle > 0 else 0.0) for edge, angle in options.angles.items()}
+    return options
 
 
 def made(options: argparse.Namespace) -> tuple[Surface, Joints, report.Report]:
@@ -334,7 +386,8 @@ def say(title: str, source: Path, result: report.Report) -> None:
 def make_set(options: argparse.Namespace, command: str) -> dict[str, report.Report]:
     """Read a part, write punch, die, holder and the input file; return the reports by the names of the files. No tools
     are made of a part that cannot be drawn, and none is written if one has errors."""
-    material = set_deck.material_in(options.material)
+    options.material = set_material.found(options.material)
+    set_material.name_of(options.material)
     reading = setup.read_for_tools(options)
     say(str(options.source), options.source, report.Report(table.short(reading), reading.warnings,
                                                            [fault.text for fault in reading.faults]))
@@ -342,16 +395,22 @@ def make_set(options: argparse.Namespace, command: str) -> dict[str, report.Repo
         write_reading(reading, options.target)
     if reading.faults:
         sys.exit(2)
-    settle_set(options)
     progress = Progress(options.source.name)
-    with session() as gmsh:
-        tools = tool_set.made(gmsh, options, progress)
+    with session() as gmsh, about(options.source):
+        tools, options = tools_of(gmsh, options, progress)
     progress.end()
     reports = judge_set(tools, options)
     if options.target and not any(result.errors for result in reports.values()):
-        write_set(tools, options, material, command)
+        if "pad" in tools.surfaces:
+            set_pad_force(tools, options)
+        found = beads_of(tools, options) if options.beads else beads.Beads()
+        write_set(tools, options, found, command)
         reports[str(options.target / DRAW)] = report.Report(
             [f"  {'travel':<10} {tools.travel:.6g} mm", f"  {'blank':<10} {set_deck.said(options, tools.blank)}"])
+        for line in [set_material.said(options.material), *set_deck.notes(options, tools),
+                     *(found.said() if options.beads else [])]:
+            reports[str(options.target / DRAW)].add(*line)
+        reports[str(options.target / DRAW)].warnings += set_material.warnings(options.material)
         if tools.ratio > RATIO:
             reports[str(options.target / DRAW)].warnings.append(
                 f"the drawing ratio, the root of the area of the blank over that of the punch, is {tools.ratio:.3g}: mild "
@@ -363,9 +422,48 @@ def make_set(options: argparse.Namespace, command: str) -> dict[str, report.Repo
     return reports
 
 
+def program_of(options: argparse.Namespace) -> Path | None:
+    """Return the program, None if there is none."""
+    found = shutil.which(options.program or places.program())
+    return Path(found) if found else None
+
+
+def beads_of(tools: tool_set.ToolSet, options: argparse.Namespace) -> beads.Beads:
+    """Return the draw-beads that are proposed, with their restraint by the material."""
+    if "holder" not in tools.surfaces or "pad" in tools.surfaces:
+        return beads.Beads(reason="there is no holder around the part that carries them")
+    drawn = None if options.beads == ESTIMATE else draw_in_of(options.beads)
+    found = beads.proposed(tools.blank, options.thickness, drawn)
+    if found.lines:
+        program = program_of(options)
+        if not program:
+            raise Problem("--beads needs the program for the restraint; --program names it")
+        stress = set_material.stress_of(program, options.material)
+        found.force = beads.restraint(stress, options.thickness, set_deck.FRICTION)
+        found.part = found.force / beads.largest(stress, options.thickness)
+    return found
+
+
+def set_pad_force(tools: tool_set.ToolSet, options: argparse.Namespace) -> None:
+    """Set the force of the pad, which is not less than by its pressure, if there is the program."""
+    program = program_of(options)
+    if program:
+        least = set_deck.PRESSURE * tools.area["pad"]
+        tools.pad_force = max(least, pad_force.needed(tools, set_material.stress_of(program, options.material),
+                                                      set_deck.PRESSURE * tools.area.get("holder", 0.0), options,
+                                                      set_deck.FRICTION))
+
+
+def draw_in_of(run: Path) -> tuple[np.ndarray, np.ndarray]:
+    """Return the points in plan of the rim of the sheet at the end of a run (n, 2), and their draw-in, mm."""
+    sheet = Sheet(run)
+    rim = np.concatenate(sheet.outline())
+    return sheet.points(-1)[rim, :2], sheet.values(-1, "draw_in")[0][rim]
+
+
 def check_deck(result: report.Report, options: argparse.Namespace) -> None:
     """Add what the program says of the input file of a set to its report: memory, elements, time, warnings and errors."""
-    program = shutil.which(options.program or places.program())
+    program = program_of(options)
     if not program and options.program:
         result.errors.append(f"{options.program}: no such program")
     elif not program:
@@ -398,13 +496,13 @@ def judge_set(tools: tool_set.ToolSet, options: argparse.Namespace) -> dict[str,
     return reports
 
 
-def write_set(tools: tool_set.ToolSet, options: argparse.Namespace, material: str, command: str) -> None:
-    """Write the tools of a part and the input file."""
+def write_set(tools: tool_set.ToolSet, options: argparse.Namespace, found: beads.Beads, command: str) -> None:
+    """Write the tools of a part and the input file with draw-beads."""
     options.target.mkdir(parents=True, exist_ok=True)
     for name, surface in tools.surfaces.items():
         write(options.target / f"{name}.bez", surface, [f"{name} of {options.source.name}: {command}"])
     set_deck.write_blank(options.target, tools.blank, options.source.name)
-    text = set_deck.deck(options, material, tools, command)
+    text = set_deck.deck(options, tools, found, command)
     (options.target / DRAW).write_text(text, encoding="utf-8")
     if options.curves:
         trim_deck.write(options, tools.height)

@@ -118,11 +118,12 @@ def of_facets(path: Path) -> Triangles:
     return Triangles(mesh.nodes, np.vstack((mesh.facets[:, :3], mesh.facets[quads][:, [0, 2, 3]])))
 
 
-def prepared(path: Path, mesh: Triangles, mirror: Sequence[int]) -> Triangles:
-    """Return a surface in one piece whose triangles turn the same way, seen from above, with its mirror images."""
+def prepared(path: Path, mesh: Triangles, mirror: Sequence[int], least: float = 0.0) -> Triangles:
+    """Return a surface in one piece whose triangles turn the same way, seen from above, with its mirror images. Nodes
+    that are nearer to each other than `least`, mm, become one."""
     import pyvista as pv
     nodes, triangles = mesh.nodes, mesh.triangles
-    near = NEAR * float(np.ptp(nodes, axis=0).max())
+    near = max(NEAR * float(np.ptp(nodes, axis=0).max()), least)
     for axis in mirror:
         if not (abs(nodes[:, axis]) < near).any():
             raise Problem(f"{path}: no node on the plane of symmetry {'xyz'[axis]} = 0")
@@ -378,7 +379,8 @@ def solved(balance: Balance, places: np.ndarray) -> np.ndarray | None:
         if abs(residual).max() <= SOLVED * max(abs(balance.forces(corners)).max(), LEAST * balance.length):
             return places
         matrix = bmat([[balance.tangent(corners), csc_array(frame)], [csc_array(frame.T), None]], format="csc")
-        step = splu(matrix).solve(np.concatenate((-residual, np.zeros(3))))[:2 * count].reshape(-1, 2)
+        factors = splu(matrix, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+        step = factors.solve(np.concatenate((-residual, np.zeros(3))))[:2 * count].reshape(-1, 2)
         share, before = 1.0, np.linalg.norm(residual)
         while share >= SHORTEST:
             trial = places + share * step

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 GOOD, BAD, DOUBTFUL, OPEN = "good", "not good", "doubtful", "not judged"
-COLOURS = {GOOD: "#55a868", BAD: "#d64541", DOUBTFUL: "#f0c040", OPEN: "#9aa0a6"}
+COLOURS = {GOOD: "#009e73", BAD: "#d55e00", DOUBTFUL: "#f0e442", OPEN: "#9aa0a6"}
 
 
 class Item(NamedTuple):

@@ -104,8 +104,8 @@ A strip of t = 1 mm in plane strain is bent over a quarter of a cylinder of radi
 10 to 13 % at its middle. Where it lies on the cylinder the angle that a part covers gives the stretch λ of the lower
 face, and the area is constant: the outer radius is √(R² + 2 R t/λ), whatever the law of hardening. Means of the fields
 over the part from 9 to 66 degrees, for elements of `solid_shell` that turn by the angle in the first column; chords in
-place of arcs would be low by θ²/24, 0.0029 at 15 degrees. The end section is led down and does not turn with the strip;
-the last tenth of the length is one element, as shorter ones fold there. Deck
+place of arcs would be low by θ²/24, 0.0029 at 15 degrees. The end section is moved down and does not turn with the
+strip; the last tenth of the length is one element, as shorter ones fold there. Deck
 `tests/verification/bent_thickness/stretch.dat`.
 """, stretched, slow=True, after="""
 The tolerance of the deck is 1e-3. With the default of 0.01 the strains at R = 5 t change by less than 1e-4, for 30 %

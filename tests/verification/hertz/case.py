@@ -107,7 +107,7 @@ A rigid cylinder of radius R = 10 mm is pressed by P = 500 N/mm on an elastic ha
 friction. Hertz: half-width a = √(4 P R/(π E*)), E* = E/(1 - ν²), largest pressure 2 P/(π a), distribution an ellipse.
 The half-space is a quarter of 8 x 8 mm, its elements equal up to 0.3 mm. The half-width is that of the ellipse with the
 second moment of the nodal forces; the pressure is the force of the middle node over its part of the face. Deck
-`tests/verification/hertz/case.dat`; `hex20` cannot be in contact. The formulation of the contact is the mixed one.
+`tests/verification/hertz/case.dat`; `hex20` cannot be in contact. Contact formulation: mixed.
 """, values, slow=True),
     Section("V16 Cylinder on a half-space: contact layer", """
 The same in the compliant formulation: a layer of height h on the cylinder, in which the pressure is

@@ -78,10 +78,10 @@ def draw(axes, curves):
 SECTIONS = [
     Section("V13 Prandtl's punch", """
 A smooth rigid strip is pressed into a half-space, plane strain, von Mises, perfectly plastic with σ/E = 5e-6. Slip
-lines of Prandtl and of Hill: mean pressure (2 + π) σ/√3. The pressure must reach a plateau: an element that cannot keep
-its volume overshoots without limit. The displacement of a mesh falls to zero over one element beyond the edge, so that
-the strip is too wide by about half of it: an error of first order. The elements are shortest there, 0.4/n for n under
-half the strip. The nodes are displaced, or pressed by a tool. Deck `tests/verification/prandtl/case.dat`.
+lines of Prandtl and of Hill: mean pressure (2 + π) σ/√3. The pressure must reach a plateau: with volumetric locking it
+increases without limit. The displacement falls to zero over one element beyond the edge, so that the strip is too wide
+by about half of this element: an error of first order. The elements are shortest there, 0.4/n for n under half the
+strip. The nodes are displaced, or pressed by a tool. Deck `tests/verification/prandtl/case.dat`.
 """, values),
     Section("V13 Prandtl's punch: refinement and elements", """
 Mean pressure over the yield stress at the end. The thickness of `solid_shell` is along z, its plane that of the

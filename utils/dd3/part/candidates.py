@@ -6,6 +6,7 @@ The directions from which no normal of a side looks away are a cone.
 import numpy as np
 from scipy.optimize import nnls
 
+from dd3.part.directions import ENOUGH
 from dd3.part.shape import Shape, angle_between, unit
 from dd3.part.sheet import Sheet
 
@@ -13,8 +14,10 @@ from dd3.part.sheet import Sheet
 SAME = 1.0
 # Number of normals of flat faces that are tried.
 PLANES = 3
-# Angle by which the cone is wider, degrees: less than the draft that counts as undercut.
+# Angle by which the cone is wider, or a draft larger, degrees: less than the draft that counts as undercut.
 WIDER = 0.1
+# Steps to the direction with a draft.
+STEPS = 8
 
 
 def candidates(shape: Shape, sheet: Sheet) -> list[tuple[str, np.ndarray]]:
@@ -60,10 +63,11 @@ def distinct(found: list[tuple[str, np.ndarray]]) -> list[tuple[str, np.ndarray]
 
 
 def optimal(normal: np.ndarray, mean: np.ndarray) -> list[tuple[str, np.ndarray]]:
-    """Return the direction of the largest projected area and that of the largest least draft, of those from which no
-    normal looks away; none if each direction has one that does.
+    """Return the direction of the largest projected area, that of the largest one at a draft of 10 degrees if there is
+    one, and that of the largest least draft, of those from which no normal looks away; none if each direction has one
+    that does.
 
-    The former is the projection of the mean normal on the cone of these directions, the latter the point of the
+    The first is the projection of the mean normal on the cone of these directions, the last the point of the
     normals' convex hull that is nearest to the origin: problems of least squares with multipliers that are not
     negative. The cone is a little wider, for walls without draft on all sides.
     """
@@ -73,8 +77,21 @@ def optimal(normal: np.ndarray, mean: np.ndarray) -> list[tuple[str, np.ndarray]
     largest = mean + wider.T @ nnls(wider.T, -mean)[0]
     if np.linalg.norm(largest) > 1e-3 * np.linalg.norm(mean):
         found.append(("largest projected area", unit(largest)))
+    if np.linalg.norm(largest) and (unique @ unit(largest)).min() < np.sin(np.radians(ENOUGH)):
+        drafted = with_draft(unique, mean, unit(largest))
+        if (unique @ drafted).min() > np.sin(np.radians(ENOUGH - SAME)):
+            found.append((f"largest projected area at {ENOUGH:g} degrees", drafted))
     multiplier = nnls(np.vstack([wider.T, np.ones(len(unique))]), np.array([0.0, 0.0, 0.0, 1.0]))[0]
     nearest = wider.T @ multiplier
     if np.linalg.norm(nearest) > 1e-5 * multiplier.sum():
         found.append(("largest draft", unit(nearest)))
     return found
+
+
+def with_draft(normals: np.ndarray, mean: np.ndarray, start: np.ndarray) -> np.ndarray:
+    """Return the direction of the largest projected area from which all normals have a draft of 10 degrees, by
+    projection on a cone that is narrower by this along the direction of the step before; another one if there is none."""
+    for _ in range(STEPS):
+        narrower = normals - np.sin(np.radians(ENOUGH + WIDER)) * start
+        start = unit(mean + narrower.T @ nnls(narrower.T, -mean)[0])
+    return start

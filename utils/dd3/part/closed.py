@@ -4,11 +4,12 @@
 The faces keep their surfaces: wires are taken out of them and edges go on over an opening (see `filling`). That is done
 on both sides of a solid, and the faces through its thickness are left out. Notches of a solid, and holes for which that
 does not do, such as one over a whole radius, are taken out of the solid by OpenCASCADE, which extends the faces around
-them until they meet. If both fail, or of a surface, only the side that the tools touch is kept.
+them until they meet. If both fail, or of a surface, only the side that the tools touch is kept. A solid that is bent
+along parallel lines is replaced by its profile, extruded beyond its ends (see `profile`).
 """
 import tempfile
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ from scipy.spatial import cKDTree
 
 from dd3.part.filling import SAME, Side
 from dd3.part.openings import Opening, curves_of, middle, openings_of
+from dd3.part.profile import Profile, edges_of, extrude, faces_of, profile_of
 from dd3.part.reading import Fault, Reading
 from dd3.part.shape import Shape
 from dd3.tools.brep import Topology
@@ -30,6 +32,8 @@ EQUAL = 1e-6
 LARGE = 0.5
 # Distance over the size of the part by which edges of faces that were extended may be outside of its box.
 BEYOND = 0.01
+# Length over the thickness by which an extruded profile goes on beyond the ends of the part.
+BEYOND_ENDS = 5.0
 # Distance over that of equal points within which an edge is on its faces; points of an edge where that is measured.
 ON_FACE, PLACES = 10.0, 33
 # Processor time after which OpenCASCADE is given up, s.
@@ -61,10 +65,13 @@ def closed_part(gmsh: Any, reading: Reading, faces: list[int]) -> Closed | None:
     fault of the reading. The session has the part as it was read."""
     shape = reading.shape
     openings, outer = openings_of(gmsh, shape, faces)
+    curves = curves_of(gmsh, reading.path, shape, faces)
+    profile = profile_of(shape, reading.sheet, reading.bends) if reading.solid else None
+    if profile:
+        return extruded(gmsh, reading, profile, faces, openings, curves)
     if not openings:
         return None
     both = [openings_of(gmsh, shape, side) for side in reading.sheet.sides]
-    curves = curves_of(gmsh, reading.path, shape, faces)
     inside = {tuple(middle(gmsh, edge)): edge for edge in shape.edges_inside(faces)}
     left: list[Opening] = []
     with silence():
@@ -92,6 +99,22 @@ def closed_part(gmsh: Any, reading: Reading, faces: list[int]) -> Closed | None:
     if side.continued and (off := off_faces(gmsh, text, side.continued)) > ON_FACE * side.near:
         reading.faults.append(Fault(f"edges that go on over openings are up to {off:.3g} mm off the faces beside them: "
                                     "close the openings in the CAD program, or choose faces by --faces"))
+    return Closed(text, numbers, [tag for tag, number in numbers.items() if number in set(faces)], edges, openings,
+                  curves, notes)
+
+
+def extruded(gmsh: Any, reading: Reading, profile: Profile, faces: list[int], openings: list[Opening],
+             curves: list[np.ndarray]) -> Closed:
+    """Return the extruded profile of a part, longer than the part so that the blank covers it and is cut at its ends."""
+    beyond = BEYOND_ENDS * (reading.sheet.thickness or 0.0)
+    profile = replace(profile, low=profile.low - beyond, high=profile.high + beyond)
+    with silence():
+        extrude(gmsh, profile)
+        text = written_by(gmsh)
+        read_text(gmsh, text)
+    numbers, edges = faces_of(gmsh, profile), edges_of(gmsh, profile, reading.shape)
+    notes = [*reading.left_out, *reading.notes, f"profile of the bent part, continued by {beyond:.3g} mm beyond its ends",
+             *(["filled: " + summary([one.words for one in openings])] if openings else [])]
     return Closed(text, numbers, [tag for tag, number in numbers.items() if number in set(faces)], edges, openings,
                   curves, notes)
 

@@ -72,7 +72,8 @@ def read_roles(shape: Shape, direction: Direction, outer: Loop | None) -> dict[i
 
 def level_name(shape: Shape, roles: dict[int, Role], group: set[int], outer: Loop | None) -> str:
     """Return the name of connected level faces: floor where the faces around it rise, flange where they fall and the
-    rim of the part is beside it, island where they fall, step otherwise."""
+    rim of the part is beside it, island where they fall, step otherwise. A face beside the rim that only hollow radii
+    join, as a leg of a V, is a wall."""
     around = set().union(*(shape.neighbours[tag] for tag in group)) & set(roles) - group
     at_rim = outer is not None and bool(group & set(outer.faces))
     area = sum(shape.areas[tag] for tag in group)
@@ -81,7 +82,8 @@ def level_name(shape: Shape, roles: dict[int, Role], group: set[int], outer: Loo
     if not rise or min(rise) > 0:
         return "floor"
     if max(rise) < 0:
-        return "flange" if at_rim else "island"
+        hollow = all(roles[tag].name == "bottom radius" for tag in around)
+        return ("wall" if hollow else "flange") if at_rim else "island"
     return "floor" if area > 0.5 * sum(shape.areas[tag] for tag in roles) else "step"
 
 

@@ -18,7 +18,7 @@ from dd3.part.loops import Hole, Loop, Notch, find_loops, find_notches, hole_of
 from dd3.part.rays import Rays
 from dd3.part.sampling import sampled
 from dd3.part.shape import Shape
-from dd3.part.sheet import Sheet, is_flat, read_sheet
+from dd3.part.sheet import Sheet, apart, is_flat, read_sheet
 from dd3.part.symmetry import symmetry_planes
 from dd3.part.units import unit_of
 from dd3.tools import cad, faces
@@ -100,7 +100,7 @@ def read_part(gmsh: Any, request: Request, progress: Callable[[float], None] = l
     progress(0.3)
     account = Account()
     enter_cad(path, account, len(gmsh.model.getEntities(2)))
-    notes = cad.sew(gmsh, path, request.sew or request.tolerance, request.sew is not None)
+    notes = cad.single(gmsh) + cad.sew(gmsh, path, request.sew or request.tolerance, request.sew is not None)
     if request.scale != 1.0:
         gmsh.model.occ.dilate(gmsh.model.getEntities(), 0, 0, 0, *[request.scale] * 3)
         gmsh.model.occ.synchronize()
@@ -122,6 +122,7 @@ def read_part(gmsh: Any, request: Request, progress: Callable[[float], None] = l
         reading = Reading(path, unit_of(path), parts, shape, read_sheet(shape, rays), solid, notes=notes)
         tell_faces(gmsh, reading, request, gaps)
         tell_thickness(reading, request)
+        tell_open(reading, rays)
         read_form(reading, rays, request)
     reading.left_out = [f"left out: {item}" for item in account.left_out()]
     reading.seconds = time.perf_counter() - start
@@ -145,6 +146,17 @@ def tell_faces(gmsh: Any, reading: Reading, request: Request, gaps: list[tuple[f
     if gaps:
         reading.faults.append(Fault(cad.said_of_gaps(gmsh, gaps, request.sew or request.tolerance),
                                     edges=sorted({edge for gap in gaps for edge in gap[1:]})))
+
+
+def tell_open(reading: Reading, rays: Rays) -> None:
+    """Enter that an open shell has both sides of a sheet."""
+    distance = apart(reading.shape, rays) if reading.sheet.kind == "surface" else None
+    if distance:
+        free = [edge for edge, known in reading.shape.edges.items() if len(known.faces) == 1]
+        beside = sorted({face for edge in free for face in reading.shape.edges[edge].faces})
+        reading.warnings.append(f"the faces are {distance:.4g} mm apart, as both sides of a sheet, but the shell is "
+                                f"open beside faces {faces.spans(beside)}: a face is missing there, or not joined; "
+                                "close it in the CAD program, or take the faces of one side by --faces")
 
 
 def tell_thickness(reading: Reading, request: Request) -> None:
@@ -219,7 +231,8 @@ def tell_undercut(reading: Reading) -> None:
         said = (f"undercut at faces {named} from {direction.words} ({text}); from {other.words} there is none: "
                 f"--toward {other.components}")
     else:
-        said = (f"undercut at faces {named}: not in one stroke from any direction; from {other.words} they are {text}")
+        said = (f"undercut at faces {named}: not in one stroke from any direction; from {direction.words} they are "
+                f"{text}")
         if reading.bends:
             said += f"; the part is bent along {len(reading.bends)} straight lines, which takes more than one stroke"
     reading.faults.append(Fault(said, faces=list(hidden)))

@@ -22,6 +22,8 @@ LEAST = 1e-4
 # Of a sheet: least fraction of the area of its sides, of that at one thickness of the sides, and largest thickness over
 # the square root of a side's area.
 SHEET, UNIFORM, THICKEST = 0.6, 0.4, 0.3
+# Curvature times thickness of a round bar, whose thickness is its diameter: -2; that of a sheet is above -1.
+ROUND = -1.5
 # Angle between all normals of a side up to which the part is flat, degrees.
 FLAT = 0.5
 # Diagonal and thickness below which, mm, the unit may be another.
@@ -40,6 +42,20 @@ class Sheet:
     sides: tuple[list[int], list[int]] = ([], [])
     rims: list[int] = field(default_factory=list)
     walls: float | None = None
+
+
+def apart(shape: Shape, rays: Rays) -> float | None:
+    """Return the distance, mm, at which most of the faces of an open shell face each other as both sides of a sheet,
+    None if they do not."""
+    chosen, weight = samples(shape, shape.tags)
+    for sign in (-1.0, 1.0):  # it has no outside
+        hits = rays.hits(chosen, sign * shape.normal[chosen], LEAST * shape.size)
+        faces = (shape.normal[chosen] * hits.normal).sum(axis=1) < OPPOSITE
+        distance = most_common(hits.distance[faces], weight[faces])
+        at = faces & (np.abs(hits.distance - distance) <= EQUAL * distance)
+        if weight[at].sum() > SHEET * weight.sum() and distance < THICKEST * np.sqrt(weight.sum() / 2):
+            return distance
+    return None
 
 
 def samples(shape: Shape, faces: Iterable[int], count: int = RAYS) -> tuple[np.ndarray, np.ndarray]:
@@ -65,7 +81,12 @@ def read_sheet(shape: Shape, rays: Rays) -> Sheet:
     faces = (shape.normal[chosen] * hits.normal).sum(axis=1) < OPPOSITE
     thickness = most_common(distance[faces], weight[faces])
     at = faces & (np.abs(distance - thickness) <= MEMBER * thickness)
+    here, there = shape.face[chosen[at]], shape.face[hits.triangle[at]]
+    curvature = shape.curvature[chosen[at]].min(axis=1)
+    if weight[at][curvature * thickness < ROUND].sum() > weight[at].sum() / 2:  # a bar
+        return Sheet("block", sides=(shape.tags, []))
     sides = mostly(shape, chosen, weight, at)
+    sides = [tag for tag in sides if tag not in through_thickness(shape, here, there)]
     area = sum(shape.areas[tag] for tag in sides)
     if area < SHEET * sum(shape.areas.values()) or thickness > THICKEST * np.sqrt(area / 2):
         return Sheet("block", sides=(shape.tags, []))
@@ -74,10 +95,20 @@ def read_sheet(shape: Shape, rays: Rays) -> Sheet:
     fraction = float(weight[equal & of_sides].sum() / weight[of_sides].sum())
     if fraction < UNIFORM:
         return Sheet("block", sides=(shape.tags, []))
-    first, second = two_sides(shape, sides, shape.face[chosen[at]], shape.face[hits.triangle[at]], weight[at])
+    first, second = two_sides(shape, sides, here, there, weight[at])
     if min(sum(shape.areas[tag] for tag in side) for side in (first, second)) < ONE_SIDED * area:
         return Sheet("block", sides=(shape.tags, []), walls=thickness)
     return Sheet("sheet", thickness, fraction, (first, second), [tag for tag in shape.tags if tag not in sides])
+
+
+def through_thickness(shape: Shape, here: np.ndarray, there: np.ndarray) -> set[int]:
+    """Return the faces beside two larger ones that face each other, `here` and `there` by samples, which are rims, even
+    if they face others at the distance of the sides, as across a slot or a narrow arm."""
+    found: set[int] = set()
+    for a, b in {(a, b) for a, b in zip(here.tolist(), there.tolist()) if a < b}:
+        larger = min(shape.areas[a], shape.areas[b])
+        found |= {tag for tag in shape.neighbours[a] & shape.neighbours[b] if shape.areas[tag] < larger}
+    return found
 
 
 def mostly(shape: Shape, chosen: np.ndarray, weight: np.ndarray, true: np.ndarray) -> list[int]:
@@ -116,7 +147,12 @@ def two_sides(shape: Shape, faces: list[int], here: np.ndarray, there: np.ndarra
 
 
 def is_flat(shape: Shape, sheet: Sheet) -> bool:
-    """Tell whether nothing is formed: a sheet or surface with one normal."""
-    chosen = shape.of(sheet.sides[0])
+    """Tell whether nothing is formed: a sheet or surface with one normal on a side; the other may have countersinks."""
+    return sheet.kind != "block" and any(has_one_normal(shape, side) for side in sheet.sides if side)
+
+
+def has_one_normal(shape: Shape, side: list[int]) -> bool:
+    """Tell whether the normals of a side are one."""
+    chosen = shape.of(side)
     mean = shape.normal[chosen[shape.area[chosen].argmax()]]
-    return sheet.kind != "block" and bool(((shape.normal[chosen] @ mean) > np.cos(np.radians(FLAT))).all())
+    return bool(((shape.normal[chosen] @ mean) > np.cos(np.radians(FLAT))).all())

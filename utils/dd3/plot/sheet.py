@@ -111,9 +111,10 @@ def bernstein(degree: int, t: np.ndarray) -> np.ndarray:
     return np.array([math.comb(degree, i) * t**i * (1 - t) ** (degree - i) for i in range(degree + 1)])
 
 
-def tool_surface(patches: Patches, placement: Placement) -> tuple[pv.PolyData, pv.PolyData]:
-    """Return the surface of a tool at its place, and the edges of its patches; of many patches its outer edges."""
-    finest = max(2, min(24, round(math.sqrt(POINTS / len(patches)))))
+def tool_surface(patches: Patches, placement: Placement, count: int = POINTS) -> tuple[pv.PolyData, pv.PolyData]:
+    """Return the surface of a tool at its place, of about `count` points, and the edges of its patches; of many patches
+    its outer edges."""
+    finest = max(2, min(24, round(math.sqrt(count / len(patches)))))
     points, faces, lines, first = [], [], [], 0
     for shape in {weights.shape for _, weights in patches}:
         alike = [patch for patch in patches if patch[1].shape == shape]

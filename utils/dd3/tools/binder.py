@@ -25,6 +25,14 @@ FADE = 0.25
 HALVED = 5
 
 
+class NoBinder(Problem):
+    """The part gets no binder: the reason, and what the user may do."""
+
+    def __init__(self, reason: str, remedy: str) -> None:
+        super().__init__(reason + remedy)
+        self.reason = reason
+
+
 @dataclass
 class Binder:
     """Direction in plan across the rulings (2,); profile of the heights over it, which goes on beyond its

@@ -260,6 +260,21 @@ def doubled(gmsh: Any, tags: list[int]) -> list[tuple[int, int]]:
     return list(result.items())
 
 
+def single(gmsh: Any) -> list[str]:
+    """Remove the faces that lie on others, of which none belongs to a solid, as they cannot be sewn; return a note."""
+    if gmsh.model.getEntities(3):
+        return []
+    twins = doubled(gmsh, [tag for _, tag in gmsh.model.getEntities(2)])
+    gmsh.model.occ.remove([(2, tag) for tag, _ in twins], recursive=True)
+    gmsh.model.occ.synchronize()
+    return [said_of_doubled(twins)] if twins else []
+
+
+def said_of_doubled(twins: list[tuple[int, int]]) -> str:
+    """Return what is to be said of faces and those on which they lie."""
+    return "doubled faces left out: " + ", ".join(f"{tag} (on {other})" for tag, other in twins)
+
+
 def collect(gmsh: Any, model: Model) -> None:
     """Take the quadrilaterals of the mesh."""
     label, xyz, _ = gmsh.model.mesh.getNodes()
@@ -462,6 +477,7 @@ def read_file(gmsh: Any, path: Path, model: Model, options: argparse.Namespace) 
     load(gmsh, path)
     enter_cad(path, account, len(gmsh.model.getEntities(2)))
     model.notes += [f"left out: {item}" for item in account.left_out()]
+    model.notes += single(gmsh)
     model.notes += sew(gmsh, path, options.sew or options.tolerance, options.sew is not None)
     if options.scale != 1.0:
         gmsh.model.occ.dilate(gmsh.model.getEntities(), 0, 0, 0, *[options.scale] * 3)
@@ -490,19 +506,19 @@ def read_cad(gmsh: Any, path: Path, options: argparse.Namespace, progress: Progr
     file_tag = {tag: number.get(tag, tag) for tag in tags}
     if options.taken:
         tags = sorted(options.taken)
-        if options.sharp and in_solids.issuperset(tags):
-            origin = fillets.rounded(gmsh, tags, options.sharp)
-            file_tag = {tag: file_tag.get(old, 0) for tag, old in origin.items()}
-            tags = list(file_tag)
-            in_solids = set(tags)
-            model.notes.append(fillets.said_of(options.sharp))
     elif not options.closed and options.thickness and not options.faces and set(tags) <= in_solids:
         # The punch touches a sheet from above.
         up = (0, 0, -1 if options.side == "die" else 1)
         tags = faces.side_of_sheet(gmsh, path, tags, moved.rotation(options.rotate).T @ up)
+    if options.sharp and in_solids.issuperset(tags):
+        origin = fillets.rounded(gmsh, tags, options.sharp)
+        file_tag = {tag: file_tag.get(old, 0) for tag, old in origin.items()}
+        tags = list(file_tag)
+        in_solids = set(tags)
+        model.notes.append(fillets.said_of(options.sharp))
     twins = doubled(gmsh, tags)
     if twins:
-        model.notes.append("doubled faces left out: " + ", ".join(f"{tag} (on {other})" for tag, other in twins))
+        model.notes.append(said_of_doubled(twins))
     model.tags = [tag for tag in tags if tag not in {twin for twin, _ in twins}]
     model.solid = set(model.tags) <= in_solids
     others = [(2, tag) for _, tag in gmsh.model.getEntities(2) if tag not in model.tags]

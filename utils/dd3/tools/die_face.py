@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 
 from dd3.errors import Problem
 from dd3.tools import report
-from dd3.tools.binder import Binder, kinds, of_points, patches_on
+from dd3.tools.binder import Binder, NoBinder, kinds, of_points, patches_on
 from dd3.tools.joints import find_joints, kinks, orient, turn
 from dd3.tools.own_flange import Trimmed
 from dd3.tools.plane import Side, box, straight
@@ -80,8 +80,8 @@ def with_face(gmsh: Any, die: Trimmed, options: argparse.Namespace) -> Face:
         found.lines.append(("edges", f"{others} free edges of patches stay open, as the part does not climb there"))
     borders = border_rims(surface, joints, die.border, across=True)
     if not walls and not borders:
-        raise Problem(f"{options.source}: no free edge of the part at which it climbs by more than 10 degrees, as the "
-                      f"punch moves along -z into the part{options.advice}")
+        raise NoBinder("no free edge of the part climbs by more than 10 degrees, as the punch moves along -z into it",
+                       options.advice)
     refuse_mixed(walls, borders)
     nets = [surface.net]
     if borders:
@@ -99,15 +99,22 @@ def with_face(gmsh: Any, die: Trimmed, options: argparse.Namespace) -> Face:
     return found
 
 
+def estimated(covered: np.ndarray, curves: list[np.ndarray], lines: list[tuple[str, str]], options: argparse.Namespace
+              ) -> Blank:
+    """Return the blank that covers patches; where it is not estimated a box around curves. Enter what is to be said."""
+    try:
+        return blank_of(options.source, Surface(covered, np.zeros(len(covered), int), [""]), options.thickness,
+                        options.margin)
+    except Problem as problem:
+        lines.append(("blank", f"not estimated, as {problem.args[0].split(': ', 1)[-1]}: {WIDE:g} thicknesses wide"))
+    around = np.concatenate(curves)[:, :2]
+    low, high = around.min(axis=0) - WIDE * options.thickness, around.max(axis=0) + WIDE * options.thickness
+    return Blank(np.array([low, [high[0], low[1]], high, [low[0], high[1]]]), False)
+
+
 def set_blank(found: Face, covered: np.ndarray, options: argparse.Namespace) -> None:
     """Set the blank that covers patches, and how far the die reaches, where `--flange` does not tell."""
-    try:
-        found.blank = blank_of(options.source, Surface(covered, np.zeros(len(covered), int), [""]), options.margin)
-    except Problem as problem:
-        found.lines.append(("blank", f"not estimated, as {problem.args[0].split(': ', 1)[-1]}: {WIDE:g} thicknesses wide"))
-        around = np.concatenate([reach.curve[:, :2] for reach in found.reaches])
-        low, high = around.min(axis=0) - WIDE * options.thickness, around.max(axis=0) + WIDE * options.thickness
-        found.blank = Blank(np.array([low, [high[0], low[1]], high, [low[0], high[1]]]), False)
+    found.blank = estimated(covered, [reach.curve for reach in found.reaches], found.lines, options)
     if options.flange is None:
         inset = INSET * options.thickness
         found.outline = found.blank.box + np.array([[-inset], [inset]])
@@ -123,8 +130,8 @@ def refuse_mixed(walls: list[Rim], borders: list[Rim]) -> None:
         for end in (rim.points[0], rim.points[-1]):
             if not rim.closed and ends and np.linalg.norm(np.array(ends) - end, axis=1).min() < 1e-6 * np.ptp(
                     rim.points, axis=0).max():
-                raise Problem("the part has a flange along a part of its rim only, up to near x y z = "
-                              + report.where(end) + ": leave it out by --faces, or continue it in the CAD program")
+                raise NoBinder("the part has a flange along a part of its rim only, up to near x y z = "
+                               + report.where(end), ": leave it out by --faces, or continue it in the CAD program")
 
 
 def at_borders(found: Face, die: Trimmed, rims: list[Rim], options: argparse.Namespace) -> None:
@@ -135,9 +142,9 @@ def at_borders(found: Face, die: Trimmed, rims: list[Rim], options: argparse.Nam
         binder = one or of_points(own, options.tolerance)
         if binder is None:
             best = min(kinds(own, options.tolerance), key=lambda kind: kind.distance(own))
-            raise Problem(f"the part's own flange, {report.named(part, np.unique(part.face))}, is up to "
-                          f"{best.distance(own):.3g} mm off a developable surface, which a binder has to be: leave it "
-                          "out by --faces")
+            raise NoBinder(f"the part's own flange, {report.named(part, np.unique(part.face))}, is up to "
+                           f"{best.distance(own):.3g} mm off a developable surface, which a binder has to be",
+                           ": leave it out by --faces")
         if binder not in found.binders:
             found.binders.append(binder)
     for rim in rims:
@@ -216,7 +223,7 @@ def chosen(rims: list[Rim], lowest: float, options: argparse.Namespace) -> Binde
         if longest <= OF_DEPTH * (points[:, 2].max() - lowest):
             return binder
     if not tried:
-        raise Problem("no binder is reached by the walls at the rim of the part")
+        raise NoBinder("no binder is reached by the walls at the rim of the part", "")
     return min(tried)[2]
 
 
@@ -252,8 +259,8 @@ def flange(gmsh: Any, face: Face, curves: list[np.ndarray], tolerance: float) ->
     reaches = face.reaches
     for curve in curves:
         if len(curve) % 4 != 1:  # an odd number of patches, beside which the mesh of the flange cannot be
-            raise Problem("an edge climbs by more than 10 degrees along a part of it only, up to near x y z = "
-                          + report.where(curve[-1]) + ": divide it there in the CAD program")
+            raise NoBinder("an edge climbs by more than 10 degrees along a part of it only, up to near x y z = "
+                           + report.where(curve[-1]), ": divide it there in the CAD program")
     nodes = []
     closed = [k for k, reach in enumerate(reaches) if reach.rim.closed]
     if closed:

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Fillets in place of the sharp edges of one side of a sheet, made in the CAD by OpenCASCADE before it is meshed."""
+"""Fillets in place of the sharp edges of one side of a sheet or a block, made in the CAD by OpenCASCADE before it is
+meshed."""
 from itertools import product
 from typing import Any
 
 import numpy as np
 
 from dd3.errors import Problem
+from dd3.tools.faces import spans
 
 # Distance over the size of the model within which a point is on a face; cosine between normals there.
 ON, PARALLEL = 1e-6, 0.999
@@ -29,9 +31,8 @@ def rounded(gmsh: Any, side: list[int], edges: dict[int, float]) -> dict[int, in
         new = occ.fillet(volumes[:1], list(edges), list(edges.values()), removeVolume=False)
         occ.synchronize()
     except Exception:  # Gmsh raises nothing more specific
-        radius = max(edges.values())
-        raise Problem(f"the sharp edges {' '.join(str(edge) for edge in edges)} cannot be rounded by up to "
-                      f"{radius:.3g} mm: take a smaller --radius, or round them in the CAD program") from None
+        raise Problem(f"the sharp edges {spans(list(edges))} cannot be rounded by up to {max(edges.values()):.3g} mm"
+                      + cause(gmsh, edges)) from None
     after = {abs(tag) for _, tag in gmsh.model.getBoundary(new, combined=False)}
     origin = {}
     for tag in sorted(after):
@@ -39,6 +40,16 @@ def rounded(gmsh: Any, side: list[int], edges: dict[int, float]) -> dict[int, in
         if old is None or old in side:
             origin[tag] = old or 0
     return origin
+
+
+def cause(gmsh: Any, edges: dict[int, float]) -> str:
+    """Return why OpenCASCADE makes no fillets, as far as it can be told, and what to do."""
+    length = {edge: gmsh.model.occ.getMass(1, edge) for edge in edges}
+    short = [edge for edge, radius in edges.items() if length[edge] < radius]
+    if not short:
+        return ": take a smaller --radius, or round them in the CAD program"
+    return (f", as some are shorter than the radius, {spans(short)}, the shortest of {min(length.values()):.3g} mm, "
+            "where fillets of other edges end: round them in the CAD program, before those")
 
 
 def interior(gmsh: Any, tag: int) -> tuple[np.ndarray, np.ndarray]:

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from dd3.errors import Problem
-from dd3.tools.binder import Binder
+from dd3.tools.binder import Binder, NoBinder
 from dd3.tools.joints import EDGES, Joints, normals_along
 from dd3.tools.surface import Surface, from_nodes, points_at
 
@@ -140,8 +140,8 @@ def refuse_level(rims: list[Rim]) -> None:
     for rim in rims:
         if rim.level.any():
             flat = rim.points[int(rim.level.argmax())]
-            raise Problem("the part lies flat at its edge near x y z = " + " ".join(f"{value:.4g}" for value in flat)
-                          + ", beside an edge at which it climbs: trim it there, or leave the face out by --faces")
+            raise NoBinder("the part lies flat at its edge near x y z = " + " ".join(f"{value:.4g}" for value in flat)
+                           + ", beside an edge at which it climbs", ": trim it there, or leave the face out by --faces")
 
 
 def patches(rows: Sequence[np.ndarray]) -> np.ndarray:

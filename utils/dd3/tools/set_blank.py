@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blank of a part: the estimate in one step of `dd3 unfold` of what the sheet has covered at the end of the draw, with a
 margin."""
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -10,13 +11,15 @@ from scipy.spatial import cKDTree
 from dd3.errors import Problem
 from dd3.tools.plane import crosses, inside
 from dd3.tools.surface import Surface, areas_at, grid, points_at
-from dd3.unfold import Balance, Sheet, Triangles, prepared, rims, unfolded
+from dd3.unfold import Balance, Sheet, Triangles, area_vectors, prepared, rims, unfolded
 
-# Patches above which each becomes four triangles in place of eight.
-MANY = 1000
+# Triangles of a patch, and the number of patches up to which it gets as many.
+TRIANGLES = {8: 1000.0, 4: 2000.0, 2: np.inf}
 # Exponent of the hardening law of the estimate. With that of a mild steel, 0.2, the areas of two trays are within 0.4 %
 # of these, and it takes four times as long.
 EXPONENT = 0.5
+# Distance over the thickness below which nodes become one: triangles that are much smaller than others hinder the estimate.
+NEAR = 0.1
 # Largest distance of the simplified outline from the outline, over the margin.
 SIMPLE = 0.1
 # Points along each side of a patch at which its area is taken.
@@ -29,10 +32,14 @@ FULL = 0.9
 
 @dataclass
 class Blank:
-    """Blank in plan: closed outline (n, 2), mm, anticlockwise, and whether it is cut along it or is its box."""
+    """Blank in plan: closed outline (n, 2), mm, anticlockwise, and whether it is cut along it or is its box; the border
+    of what is covered at the end of the draw, anticlockwise, and its points in the flat blank (m, 2), none where these
+    are not estimated."""
 
     outline: np.ndarray
     cut: bool
+    rim: np.ndarray = field(default_factory=lambda: np.zeros((0, 2)))
+    flat: np.ndarray = field(default_factory=lambda: np.zeros((0, 2)))
 
     @property
     def box(self) -> np.ndarray:
@@ -52,7 +59,7 @@ class Blank:
 
     def within(self, box: np.ndarray) -> "Blank":
         """Return the part of the blank in a box (2, 2)."""
-        return Blank(np.clip(self.outline, *box), self.cut)
+        return replace(self, outline=np.clip(self.outline, *box))
 
     def pressed(self, surface: Surface) -> float:
         """Return the area in plan of the part of a surface that is over the blank, mm2."""
@@ -61,27 +68,49 @@ class Blank:
         return float((area * over).sum() / SAMPLES**2)
 
 
-def blank_of(path: Path, covered: Surface, margin: float) -> Blank:
-    """Return the blank that covers a surface, of one piece and seen from above, and is wider by a margin, mm."""
-    mesh = prepared(path, triangles_of(covered), [])
-    balance = Balance(mesh, Sheet(EXPONENT))
-    places = unfolded(path, balance)
-    border = max((places[rim] for rim in rims(path, mesh.triangles)), key=lambda points: abs(area_of(points)))
-    outline = widened(border, margin)
+def blank_of(path: Path, covered: Surface, thickness: float, margin: float) -> Blank:
+    """Return the blank that lies on a surface, of one piece and seen from above, and is wider by a margin, mm."""
+    mesh, places = laid_flat(path, covered, thickness)
+    border = max(rims(path, mesh.triangles), key=lambda rim: abs(area_of(places[rim])))
+    border = border if area_of(places[border]) > 0 else border[::-1]
+    outline = widened(places[border], margin)
     box = np.prod(np.ptp(outline, axis=0))
-    return Blank(outline, area_of(outline) < FULL * box)
+    return Blank(outline, area_of(outline) < FULL * box, mesh.nodes[border, :2], places[border])
 
 
-def triangles_of(surface: Surface) -> Triangles:
-    """Return the patches as triangles around their middles."""
+def laid_flat(path: Path, covered: Surface, thickness: float) -> tuple[Triangles, np.ndarray]:
+    """Return the middle of the sheet on a surface as triangles, and the places of its nodes in the flat blank (n, 2).
+    Fewer triangles have an estimate where slivers beside curved edges of patches hinder it."""
+    def laid(count: int) -> tuple[Triangles, np.ndarray]:
+        mesh = raised(prepared(path, triangles_of(covered, count), [], NEAR * thickness), thickness / 2)
+        return mesh, unfolded(path, Balance(mesh, Sheet(EXPONENT)))
+
+    *finer, last = [count for count, most in TRIANGLES.items() if len(covered.net) <= most]
+    for count in finer:
+        with suppress(Problem):
+            return laid(count)
+    return laid(last)
+
+
+def triangles_of(surface: Surface, count: int) -> Triangles:
+    """Return the patches as `count` triangles each, 8 or 4 around their middles, 2 between their corners."""
     around = np.array([[0, 0], [.5, 0], [1, 0], [1, .5], [1, 1], [.5, 1], [0, 1], [0, .5]])
-    around = around[::2] if len(surface.net) > MANY else around
-    u, v = np.vstack([[[.5, .5]], around]).T
+    around = around if count == 8 else around[::2]
+    u, v = np.array([*([[.5, .5]] if count > 2 else []), *around]).T
     nodes = points_at(surface.net, u, v)
     rim = np.arange(1, len(u))
-    of_patch = np.stack([np.zeros_like(rim), rim, np.roll(rim, -1)], axis=1)
+    of_patch = (np.stack([np.zeros_like(rim), rim, np.roll(rim, -1)], axis=1) if count > 2
+                else np.array([[0, 1, 2], [0, 2, 3]]))
     first = len(u) * np.arange(len(nodes))[:, None, None]
     return Triangles(nodes.reshape(-1, 3), (first + of_patch).reshape(-1, 3))
+
+
+def raised(mesh: Triangles, height: float) -> Triangles:
+    """Return triangles at a height above others, along the mean normals at their nodes."""
+    normal = np.zeros_like(mesh.nodes)
+    for corner in mesh.triangles.T:
+        np.add.at(normal, corner, area_vectors(mesh.nodes, mesh.triangles))
+    return Triangles(mesh.nodes + height * normal / np.linalg.norm(normal, axis=1, keepdims=True), mesh.triangles)
 
 
 def area_of(points: np.ndarray) -> float:
@@ -110,21 +139,26 @@ def widened(outline: np.ndarray, margin: float) -> np.ndarray:
 
 
 def simplified(points: np.ndarray, tolerance: float) -> np.ndarray:
-    """Return the points of a closed line that are needed for it to stay within a distance (Douglas and Peucker 1973)."""
+    """Return the points of a closed line that are needed for it to stay within a distance."""
     far = int(np.linalg.norm(points - points[0], axis=1).argmax())
-    kept = [0, far]
     ring = np.vstack([points, points[:1]])
-    open_parts = [(0, far), (far, len(points))]
+    return np.vstack([needed(ring[:far + 1], tolerance)[:-1], needed(ring[far:], tolerance)[:-1]])
+
+
+def needed(line: np.ndarray, tolerance: float) -> np.ndarray:
+    """Return the points of an open line that are needed for it to stay within a distance (Douglas and Peucker 1973)."""
+    kept = [0, len(line) - 1]
+    open_parts = [(0, len(line) - 1)]
     while open_parts:
         first, last = open_parts.pop()
         if last - first < 2:
             continue
-        chord = ring[last] - ring[first]
-        inner = ring[first + 1:last] - ring[first]
+        chord = line[last] - line[first]
+        inner = line[first + 1:last] - line[first]
         length = np.linalg.norm(chord)
         distance = abs(inner[:, 0] * chord[1] - inner[:, 1] * chord[0]) / length
         if distance.max() > tolerance:
             middle = first + 1 + int(distance.argmax())
             kept.append(middle)
             open_parts += [(first, middle), (middle, last)]
-    return points[sorted(kept)]
+    return line[sorted(kept)]

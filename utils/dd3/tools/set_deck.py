@@ -1,37 +1,35 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Input file that draws a part with the tools that were made of it, and releases it."""
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from dd3.curve import write_curves
-from dd3.errors import Problem
-from dd3.tools.blocks import read_blocks
+from dd3.tools import set_material
+from dd3.tools.beads import Beads
+from dd3.tools.pad_force import Pin
 from dd3.tools.set_blank import Blank
 from dd3.tools.tool_set import ToolSet
 
 # Elements of the undivided blank, about; length of the smallest ones over the least radius of the tools, on which one
-# turns by 19 degrees, and over the thickness at least; most levels.
-ELEMENTS, OF_RADIUS, OF_THICKNESS, LEVELS = 1000, 1 / 3, 1.0, 4
+# turns by 19 degrees, and over the thickness at least; height of an arc of that radius over its chord in an element,
+# over the thickness, at most (the program warns of more by W109); most levels.
+ELEMENTS, OF_RADIUS, OF_THICKNESS, SAG, LEVELS = 1000, 1 / 3, 1.0, 0.1, 4
 # Elements around a blank that is cut.
 AROUND = 2.0
 # Pressure of the holder, MPa.
 PRESSURE = 2.0
-# Density of steel, of which the weight is told without a material, t/mm3.
-STEEL_DENSITY = 7.85e-9
 # Distance from the sheet at which the holder is pressed, over the thickness.
 SHORT = 0.1
-# Least force of a pad over that of the holder: the sheet slides on the side that is held less.
-OF_HOLDER = 2.0
-STEEL = """# Replace this by your material; dd3 identify makes one from measurements.
-*MATERIAL steel
-  young = 2.1e5
-  poisson = 0.3
-  yield = von_mises
-  hardening = swift K=530 Y0=150 n=0.22"""
+# Coefficient of friction.
+FRICTION = 0.1
+# Acceleration on the earth, mm/s2.
+EARTH = 9810.0
 DECK = """# Draws {part} and releases it; tools by {command}
-# The highest point of the die's binder is at z = 0; the punch starts at the blank and moves down.
+# The highest point of the die's binder, without a holder that of the die, is at z = 0; the punch starts at the blank and
+# moves down.
 *TITLE
   {part}
 
@@ -42,7 +40,7 @@ DECK = """# Draws {part} and releases it; tools by {command}
   levels = {levels}            # which are divided where the tools are curved, down to {smallest:.2g} mm
   points = 5            # through the thickness
   depth = {travel}
-{forces}  friction = 0.1
+{forces}  friction = {friction:g}
 
 {material}
 
@@ -55,22 +53,16 @@ DECK = """# Draws {part} and releases it; tools by {command}
   thickness_points = ${{points}}
   material = {name}
 {cut}
-{tools}*CONTACT
+{tools}{beads}*CONTACT
 
-{support}{closing}*PHASE clamp
-  control = load
-  trial = 1.0
-  hold = die
-  hold = punch
-{presses}
-*PHASE draw
+{support}{pins}{gravity}{closing}{clamp}*PHASE draw
   control = punch
   trial = 1.0
   move = punch 0 0 -${{depth}}
 
 *PHASE springback
   unload = on
-
+{light}
 *OUTPUT
   fields = every 5 mm
 """
@@ -82,13 +74,38 @@ TOOL = """*TOOL {name}
 """
 CONTACT = {"punch": "z_max", "die": "z_min", "holder": "z_max", "pad": "z_min"}
 # Friction holds the sheet sideways, once the holder or a pad is on it.
-SUPPORT = """# The middle of the blank does not move sideways while the holder closes.
+SUPPORT = """# The middle of the blank does not move sideways, as it lies freely on the die at first.
 *SET middle
   near = {middle} 0
 
-*BOUNDARY middle
+"""
+FREE = "  free = middle x y\n"
+# Without holder and pad.
+HELD = """*BOUNDARY middle
   set = middle
   fix = x y
+
+"""
+# The nodes of the lower face nearest to the middles of the holes.
+PIN = """# Locating pin in the hole {words}, with which the blank has to be pierced.
+*SET pin_{number}
+  near = {place} 0
+
+*BOUNDARY pin_{number}
+  set = pin_{number}
+  fix = {fixed}
+
+"""
+GRAVITY = """# The blank is laid on the die by its weight.
+*PHASE gravity
+  control = load
+  trial = 0.1
+  hold = die
+  hold = punch
+  hold = holder
+  gravity = 0 0 -{earth:g}
+  displace = middle x 0
+  displace = middle y 0
 
 """
 BLANK = "blank.txt"  # outline of the blank
@@ -103,35 +120,50 @@ CLOSING = """# The holder bends the blank onto the die.
   hold = die
   hold = punch
   move = holder 0 0 -{closing:.6g}
+  displace = middle x 0
+  displace = middle y 0
 
+"""
+CLAMP = """*PHASE clamp
+  control = load
+  trial = 1.0
+  hold = die
+  hold = punch
+{presses}{free}
 """
 
 
-def deck(options: argparse.Namespace, material: str, tools: ToolSet, command: str) -> str:
-    """Return the input file: name of the material, tools, the command that made these."""
+def deck(options: argparse.Namespace, tools: ToolSet, beads: Beads, command: str) -> str:
+    """Return the input file: tools, draw-beads, the command that made these."""
     low, high = tools.blank.box
-    smallest = max(OF_RADIUS * tools.radius, OF_THICKNESS * options.thickness)
+    smallest = max(min(OF_RADIUS * tools.radius, (8 * SAG * options.thickness * tools.radius)**0.5),
+                   OF_THICKNESS * options.thickness)
     levels = int(np.clip(np.ceil(np.log2((tools.blank.area / ELEMENTS)**0.5 / smallest)), 0, LEVELS))
     length = 2**levels * smallest
     if tools.blank.cut:  # that does not meet the border of the mesh
         low, high = low - AROUND * length, high + AROUND * length
     divisions = [2 * int(np.ceil(side / length / 2)) for side in high - low]
-    include = f'*INCLUDE "{options.material.resolve()}"' if options.material else STEEL
     pressed = {name: PRESSURE * tools.area[name] for name in ("holder", "pad") if name in tools.surfaces}
-    if "pad" in pressed:
-        pressed["pad"] = max(pressed["pad"], OF_HOLDER * pressed.get("holder", 0.0))
+    pressed |= {"pad": tools.pad_force} if "pad" in pressed and tools.pad_force else {}
     forces = [f"  {name} = {force:.3g}     # N, {force / tools.area[name]:.2g} MPa\n"
               for name, force in pressed.items()]
+    forces += [f"  bead = {beads.force:.3g}            # N/mm, restraint of the draw-beads\n"] if beads.lines else []
     presses = [f"  press = {name} 0 0 {'-' if name == 'holder' else ''}${{{name}}}\n" for name in pressed]
+    support = SUPPORT.format(middle=pair((low + high) / 2)) if tools.closing or not pressed else ""
+    support += "" if pressed else HELD
     closing = CLOSING.format(closing=tools.closing - SHORT * options.thickness) if tools.closing else ""
+    weighs = tools.closing > 0 and set_material.density_of(options.material) is not None
     return DECK.format(part=options.source.stem, command=command, thickness=f"{options.thickness:g}",
                        divisions=f"{divisions[0]} {divisions[1]} 1", length=length,
                        levels=levels, smallest=smallest, travel=f"{tools.travel:.6g}", forces="".join(forces),
                        cut=CUT.format(file=BLANK) if tools.blank.cut else "",
-                       material=include, name=material, origin=pair(low), size=pair(high - low),
+                       material=set_material.text_of(options.material), name=set_material.name_of(options.material),
+                       friction=FRICTION, beads=beads.blocks(), pins=pinned(tools.pins),
+                       gravity=GRAVITY.format(earth=EARTH) if weighs else "",
+                       light="  gravity = 0 0 0\n" if weighs else "", origin=pair(low), size=pair(high - low),
                        tools="".join(TOOL.format(name=name, contact=CONTACT[name]) for name in tools.surfaces),
-                       support=SUPPORT.format(middle=pair((low + high) / 2)) if tools.closing else "",
-                       closing=closing, presses="".join(presses))
+                       support=support, closing=closing,
+                       clamp=CLAMP.format(presses="".join(presses), free=FREE if tools.closing else "") if pressed else "")
 
 
 def write_blank(folder: Path, blank: Blank, part: str) -> None:
@@ -143,18 +175,12 @@ def write_blank(folder: Path, blank: Blank, part: str) -> None:
 
 def said(options: argparse.Namespace, blank: Blank) -> str:
     """Return size, area and weight of a blank in words."""
-    density, of = density_in(options.material) if options.material else None, ""
+    density, of = set_material.density_of(options.material), "" if options.material else " of steel"
     if density is None:
-        density, of = STEEL_DENSITY, " of steel"
+        density, of = set_material.STEEL_DENSITY, " of steel"
     weight = 1e6 * blank.area * options.thickness * density
     x, y = np.ptp(blank.box, axis=0)
     return f"{x:.4g} x {y:.4g} mm, {blank.area:.4g} mm2, {weight:.3g} g{of}" + (f", cut along {BLANK}" if blank.cut else "")
-
-
-def density_in(path: Path) -> float | None:
-    """Return the density of the material of a file, t/mm3, None if it has none."""
-    text = next(block.value("density") for block in read_blocks(path) if block.keyword == "material")
-    return float(text) if text else None
 
 
 def pair(values: np.ndarray) -> str:
@@ -162,13 +188,41 @@ def pair(values: np.ndarray) -> str:
     return " ".join(f"{value + 0.0:.6g}" for value in np.round(values, 9))
 
 
-def material_in(path: Path | None) -> str:
-    """Return the name of the material of a file, or of the one that stands in for it."""
-    if path is None:
-        return "steel"
-    if not path.is_file():
-        raise Problem(f"{path}: no such file")
-    names = [block.name for block in read_blocks(path) if block.keyword == "material"]
-    if len(names) != 1:
-        raise Problem(f"{path}: expected one *MATERIAL, found {len(names)}")
-    return names[0]
+def pinned(pins: Sequence[Pin]) -> str:
+    """Return the supports of locating pins: the first one holds the blank, the second one against a turn about that."""
+    fixed = ["x y"]
+    if len(pins) > 1:
+        apart = np.abs(pins[1].place - pins[0].place)
+        fixed.append("y" if apart[0] > apart[1] else "x")
+    return "".join(PIN.format(words=pin.words, number=number, place=pair(pin.place), fixed=axes)
+                   for number, (pin, axes) in enumerate(zip(pins, fixed), 1))
+
+
+def sag(options: argparse.Namespace, blank: Blank) -> float | None:
+    """Return the deflection of a blank under its weight on two supports at the ends of its longer side, mm, None
+    without a density."""
+    density = set_material.density_of(options.material)
+    if density is None:
+        return None
+    span, stiffness = float(np.ptp(blank.box, axis=0).max()), set_material.stiffness_of(options.material)
+    return 5 * 12 * density * EARTH * span**4 / (384 * stiffness * options.thickness**2)
+
+
+def notes(options: argparse.Namespace, tools: ToolSet) -> list[tuple[str, str]]:
+    """Return lines of the report on what holds the blank, and its weight."""
+    lines = []
+    if "pad" in tools.surfaces:
+        area = tools.area["pad"]
+        force, by = ((tools.pad_force, "holds the floor by friction") if tools.pad_force else
+                     (PRESSURE * area, "by that pressure; what holds the floor is not estimated without the program"))
+        lines.append(("pad", f"{force:.3g} N, {force / area:.2g} MPa, {by}"))
+        lines += [("pin", f"in the hole {pin.words} at x y {pair(np.round(pin.place, 3))}: pierce the blank there")
+                  for pin in tools.pins]
+        if not tools.pins:
+            lines.append(("pin", "none, as the floor is not level or has no hole: pilot holes would locate the blank"))
+    if tools.closing:
+        deep = sag(options, tools.blank)
+        lines.append(("weight", "left out, as the material has no density: nothing lays the blank on the die" if deep is None else
+                      "the blank is laid on the die by a phase with gravity; on two supports at its ends it would sag by "
+                      f"up to {deep:.2g} mm"))
+    return lines

@@ -14,20 +14,26 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from dd3.errors import Problem
-from dd3.tools import cad, own_flange, report, sides
-from dd3.tools.die_face import INSET, Face, Reach, TooLong, consistent, even, flange, with_face
+from dd3.tools import cad, no_holder, own_flange, report, sides
+from dd3.tools.binder import NoBinder
+from dd3.tools.die_face import INSET, Face, Reach, TooLong, consistent, estimated, even, flange, with_face
 from dd3.tools.faces import spans
 from dd3.tools.joints import box_of, find_joints
 from dd3.tools.moved import placed, rotation
 from dd3.tools.offset import at_distance
+from dd3.tools.pad_force import Pin, Pull, pins
 from dd3.tools.rims import Rim, border_rims, find_rims, lengths, patches, wall
 from dd3.tools.set_blank import Blank
 from dd3.tools.surface import Surface, from_nodes, turned
 
-# Defaults over the thickness: clearance, radius of the shoulder, margin of the blank.
-CLEARANCE, SHOULDER, MARGIN = 0.1, 6.0, 5.0
+# Defaults over the thickness: clearance, radius of the shoulder, margin of the blank; smaller ones for a drawing ratio
+# that is too large with these.
+SIZES = {"clearance": 0.1, "shoulder": 6.0, "margin": 5.0}
+SMALLER = {"shoulder": 4.0, "margin": 2.0}
 # Part of the projected area that is seen from the punch which may be left out.
 LEFT_OUT = 0.05
+# Part of it below which a face is a wall, which is seen along itself.
+WALL = 1e-3
 # Part of the length of the rims by which their directions outwards do not cancel, above which there is a pad.
 ONE_SIDED = 0.3
 # Times a part is meshed at most.
@@ -43,8 +49,9 @@ DOWN = np.array([0.0, 0.0, -1.0])
 class ToolSet:
     """Surfaces by the names of the tools, with the highest point of the binder at z = 0, punch and holder at the start
     of their travels; these travels, the height by which the part was moved into the die, the least radius of the die's
-    shoulder and that of all faces of punch and die, mm; the blank, and the areas in plan of the tools over it, mm2; the
-    drawing ratio, the root of the area of the blank over that of the punch in plan, 0 of a part with open ends; the
+    shoulder, that of all faces of punch and die and that of the punch, mm; force of the pad, N, 0 if it is not estimated;
+    what pulls at a floor, and the holes in which pins locate it; the blank, and the areas in plan of the tools over it,
+    mm2; the drawing ratio, the root of the area of the blank over that of the punch in plan, 0 with open ends or no holder; the
     largest distances of the faces of punch and die from the CAD, mm; lines of the report."""
 
     surfaces: dict[str, Surface] = field(default_factory=dict)
@@ -53,6 +60,10 @@ class ToolSet:
     height: float = 0.0
     shoulder: float = 0.0
     radius: float = 0.0
+    bend: float = 0.0
+    pad_force: float = 0.0
+    pulls: list[Pull] = field(default_factory=list)
+    pins: list[Pin] = field(default_factory=list)
     blank: Blank = field(default_factory=lambda: Blank(np.zeros((0, 2)), False))
     area: dict[str, float] = field(default_factory=dict)
     ratio: float = 0.0
@@ -96,12 +107,15 @@ def refuse_left_out(model: cad.Model, options: argparse.Namespace) -> None:
     """Refuse a choice of faces, not made by the user, that leaves out a part of what is seen from the punch."""
     if options.faces or options.taken:
         return
-    left = {tag: area for tag, area in options.visible.items() if tag not in model.origin}
-    part = sum(left.values()) / max(sum(options.visible.values()), 1e-300)
+    total = max(sum(options.visible.values()), 1e-300)
+    left = {tag: area for tag, area in options.visible.items() if tag not in model.origin and area > WALL * total}
+    part = sum(left.values()) / total
     if part > LEFT_OUT:
-        raise Problem(f"{100 * part:.3g} % of what is seen of the tool are left out, faces {spans(list(left))}, as "
-                      f"they do not join the others smoothly: --faces {spans(list(options.visible))} takes them too, "
-                      "or choose those that one tool touches")
+        both = spans(sorted({*model.origin, *left} - {0}))
+        raise Problem(f"{100 * part:.3g} % of what is seen of the block are left out, faces {spans(list(left))}, as "
+                      "they do not join the others smoothly. If the block is a tool: "
+                      f"dd3 tool {options.source} tool.bez --toward {options.seen} makes it of all faces. If it has the "
+                      f"shape of a part: --faces {both} takes them too, or choose those that one tool touches")
 
 
 def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
@@ -115,6 +129,10 @@ def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
             break
         except TooLong as error:
             options.longest = error.length
+        except NoBinder as missing:
+            if options.advice or not no_holder.is_shallow(die):
+                raise
+            return without_holder(punch, die, distance, missing.reason, options)
     else:
         raise Problem(f"{options.source}: the binder at the rim of the part is curved too strongly")
     notes = punch.notes + die.notes
@@ -127,8 +145,8 @@ def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
     result.shoulder = min(made_here, radius)
     if beside:
         result.lines.append(("shoulder", f"of the part, radius {radius:.3g} mm on the die"))
-    result.radius = min(result.shoulder, *(own_flange.least_radius(tool, range(len(tool.names)))
-                                           for tool in (punch, face.surface)))
+    result.bend, least = (own_flange.least_radius(tool, range(len(tool.names))) for tool in (punch, face.surface))
+    result.radius = min(result.shoulder, result.bend, least)
     inset = INSET * options.thickness
     low, high = box_of(face.surface.net)
     result.blank = face.blank.within(np.array([low[:2] + inset, high[:2] - inset]))
@@ -138,9 +156,11 @@ def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
     result.travel = float(over - report.extent(punch.net)[0][2])
     others = {"punch": (punch, result.travel - top), "die": (face.surface, -top)}
     floor = np.isin(face.surface.face, [label for label, role in enumerate(roles) if role == "floor"])
-    pad = floor.any() and one_sided(face)
+    result.pulls = pulls(face)
+    pad = floor.any() and one_sided(face, result.pulls)
     if pad:
         part = face.surface.select(floor)
+        result.pins = pins(options.holes, part, options)
         others["die"] = face.surface.select(~floor), -top
         others["pad"] = part, -float(report.extent(part.net)[1][2])
         result.lines.append(("pad", "under the floor, as the part is formed on one side of it only"))
@@ -158,14 +178,43 @@ def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
     return result
 
 
-def one_sided(face: Face) -> bool:
-    """Tell whether walls or flanges pull the sheet to one side."""
-    pull, total = np.zeros(3), 0.0
+def without_holder(punch: Surface, die: Surface, distance: dict[str, np.ndarray], reason: str,
+                   options: argparse.Namespace) -> ToolSet:
+    """Return the tools of a part that gets no binder, both sides of it with strips as wide as the blank needs."""
+    result = ToolSet(distance=distance, lines=[("", note) for note in punch.notes + die.notes])
+    result.blank = estimated(die.net, [no_holder.outer_rim(die)[0]], result.lines, options)
+    width = options.flange or no_holder.width_for(die, result.blank.border, INSET * options.thickness)
+    punch, die = (no_holder.continued(tool, width) for tool in (punch, die))
+    result.lines.append(("holder", f"none, as {reason}: formed between punch and die, which go on by "
+                         f"{width:.3g} mm along the tangents at the rim"))
+    low, high = box_of(die.net)
+    inset = INSET * options.thickness
+    result.blank = result.blank.within(np.array([low[:2] + inset, high[:2] - inset]))
+    result.radius = min(own_flange.least_radius(tool, range(len(tool.names))) for tool in (punch, die))
+    result.shoulder = np.inf
+    result.height = -float(report.extent(die.net)[1][2])
+    result.travel = options.thickness - result.height - float(report.extent(punch.net)[0][2])
+    punch.net = turned(punch.net)
+    for name, surface, height in (("punch", punch, result.travel), ("die", die, 0.0)):
+        result.area[name] = result.blank.pressed(surface)
+        surface.net = placed(surface.net, np.eye(3), (0.0, 0.0, result.height + height))
+        result.surfaces[name] = surface
+    return result
+
+
+def pulls(face: Face) -> list[Pull]:
+    """Return what pulls at the floor along the rims of the die."""
+    found = []
     for reach in face.reaches:
         length = np.linalg.norm(np.diff(reach.rim.points, axis=0), axis=1)
-        pull += length @ (reach.rim.out[1:] + reach.rim.out[:-1]) / 2
-        total += length.sum()
-    return bool(np.linalg.norm(pull) > ONE_SIDED * total)
+        found.append(Pull(length @ (reach.rim.out[1:] + reach.rim.out[:-1]) / 2, reach.own))
+    return found
+
+
+def one_sided(face: Face, pulled: list[Pull]) -> bool:
+    """Tell whether walls or flanges pull the sheet to one side."""
+    total = sum(np.linalg.norm(np.diff(reach.rim.points, axis=0), axis=1).sum() for reach in face.reaches)
+    return bool(np.linalg.norm(sum(pull.along for pull in pulled)) > ONE_SIDED * total)
 
 
 def with_walls(part: own_flange.Trimmed, face: Face, options: argparse.Namespace

@@ -6,7 +6,7 @@ import argparse
 import numpy as np
 
 from dd3.curve import write_curves
-from dd3.tools import set_deck
+from dd3.tools import set_material
 from dd3.tools.moved import rotation
 
 DECK, CURVES, PROCESS = "trim.dat", "trim.txt", "part.toml"
@@ -48,7 +48,6 @@ def write(options: argparse.Namespace, height: float) -> None:
     matrix, move = rotation(options.rotate), np.array(options.move) + [0.0, 0.0, height]
     write_curves(options.target / CURVES, [points @ matrix.T + move for points in options.curves],
                  options.source.name)
-    include = f'*INCLUDE "{options.material.resolve()}"' if options.material else set_deck.STEEL
-    (options.target / DECK).write_text(TEXT.format(part=options.source.stem, material=include, curves=CURVES),
-                                       encoding="utf-8")
+    (options.target / DECK).write_text(TEXT.format(part=options.source.stem, material=set_material.text_of(options.material),
+                                                   curves=CURVES), encoding="utf-8")
     (options.target / PROCESS).write_text(OPERATIONS.format(part=options.source.stem, file=PROCESS), encoding="utf-8")

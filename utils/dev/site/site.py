@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Build the site of the documents with MkDocs, and the interface of the sources with FORD.
 
-  site.py --work build/site      the pages are in build/site/site
+  site.py --work build/site      the pages are in build/site/html
 
-Warnings are errors. Needs `pip install "./utils[test]"`.
+Warnings are errors. `utils/dev/site.sh` calls it with what it needs installed.
 """
 import argparse
 import pathlib
@@ -15,7 +15,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
-TOP = {"README.md": "index.md", "CONTRIBUTING.md": "CONTRIBUTING.md", "CHANGELOG.md": "CHANGELOG.md"}
+TOP = ["CONTRIBUTING.md", "CHANGELOG.md", "CODE_OF_CONDUCT.md", "SECURITY.md"]
 FORD = """project: dd3imp
 src_dir: {sources}
 output_dir: {output}
@@ -37,15 +37,18 @@ def copy_pages(pages):
     """Copy the documents; links lead to the copies, and files that they link to are copied too."""
     shutil.rmtree(pages, ignore_errors=True)
     shutil.copytree(ROOT / "docs", pages)
-    for name, copy in TOP.items():
+    for name in TOP:
         text = (ROOT / name).read_text(encoding="utf-8").replace("](docs/", "](")
-        (pages / copy).write_text(text.replace("](LICENSE)", "](LICENSE.txt)"), encoding="utf-8")
+        (pages / name).write_text(text, encoding="utf-8")
     shutil.copy(ROOT / "LICENSE", pages / "LICENSE.txt")
     shutil.copy(ROOT / "CITATION.cff", pages)
+    for name in ("site.css", "frame_worker.js"):
+        shutil.copy(HERE / name, pages)
     for page in pages.rglob("*.md"):
         text = page.read_text(encoding="utf-8")
         up = "../" * (len(page.relative_to(pages).parts) - 1)
-        text = re.sub(r"\]\(\s*(?:\.\./)+CONTRIBUTING\.md", f"]({up}CONTRIBUTING.md", text)
+        text = re.sub(r"\]\(\s*(?:\.\./)+(CONTRIBUTING\.md|CHANGELOG\.md|CITATION\.cff)", rf"]({up}\1", text)
+        text = re.sub(r"\]\(\s*(?:\.\./)+LICENSE\)", f"]({up}LICENSE.txt)", text)
         for link in re.findall(r"\]\(\s*((?:\.\./)*input_files/[^)#]+)\)", text):
             target = link[link.index("input_files/"):]
             (pages / target).parent.mkdir(parents=True, exist_ok=True)
@@ -54,11 +57,27 @@ def copy_pages(pages):
         page.write_text(text, encoding="utf-8")
 
 
+def remove_foreign_scripts(sources):
+    """Remove what FORD's pages load from other hosts: a second jQuery, MathJax, shims for old browsers."""
+    for page in sources.rglob("*.html"):
+        text = page.read_text(encoding="utf-8")
+        page.write_text(re.sub(r'<script src="https?://[^>]*></script>', "", text), encoding="utf-8")
+
+
 def navigation(pages):
     """Return the settings of MkDocs with the pages of the folders that they name."""
     def listed(line):
         return "\n".join(f"{line[1]}- {path.relative_to(pages)}" for path in sorted((pages / line[2]).glob("*.md")))
     return re.sub(r"^( *)- (\w+)/\*$", listed, (HERE / "mkdocs.yml").read_text(encoding="utf-8"), flags=re.MULTILINE)
+
+
+def check_hosts(site):
+    """End where a page loads a script, a style or a picture from another host."""
+    for page in site.rglob("*.html"):
+        found = re.search(r'<(?:script|img|link rel="stylesheet")[^>]*(?:src|href)="https?://[^"]*"',
+                          page.read_text(encoding="utf-8"))
+        if found:
+            sys.exit(f"{page}: {found[0]}")
 
 
 def run(words, folder):
@@ -80,9 +99,12 @@ def main():
     project.write_text(FORD.format(sources=ROOT / "src", output=pages / "sources"), encoding="utf-8")
     tools = pathlib.Path(sys.executable).parent
     run([tools / "ford", project], work)
+    remove_foreign_scripts(pages / "sources")
     (work / "mkdocs.yml").write_text(navigation(pages), encoding="utf-8")
+    shutil.copy(HERE / "mathematics.py", work)
     run([tools / "mkdocs", "build", "--strict"], work)
-    print(work / "site" / "index.html")
+    check_hosts(work / "html")
+    print(work / "html" / "index.html")
 
 
 if __name__ == "__main__":

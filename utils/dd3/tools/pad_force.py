@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Force with which a pad holds the floor by friction, and holes of the floor in which pins locate it.
+
+A flange that is drawn from under the holder pulls at the floor, per length, by its friction on both sides and by the
+bending and straightening of a rigid-plastic sheet over the shoulder, sigma t^2/(2 r) about the radius r of its middle
+(Siebel and Beisswänger, Tiefziehen, 1955); the friction about shoulder and punch radius cancel each other.
+
+A leg without holder is wiped: bent by the moment M = sigma t^2/4 about the punch radius, it is pressed against the
+shoulder by M/l. The arm l between both, along the leg, is l^2 = (R + c)^2 + h^2 - R^2: R the sum of both radii and the
+thickness, c the clearance, h the height between their centres. It becomes small as the leg becomes vertical.
+"""
+import argparse
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dd3.part.loops import Hole
+from dd3.tools.moved import rotation
+from dd3.tools.plane import inside
+from dd3.tools.surface import Surface, points_at
+
+if TYPE_CHECKING:
+    from dd3.tools.tool_set import ToolSet
+
+# Force of the pad over that with which a leg is pressed against the shoulder. Its friction on the shoulder alone would
+# need 1/2; with that the floor of an angle of 2 mm slides by 0.7 mm, with 1.5 by 0.1 mm, as the punch radius wedges it.
+OF_LEG = 1.5
+# Least clearance that counts, over the thickness.
+CLEARANCE = 0.05
+# Height of a hole over the floor, over the thickness, that is in it.
+IN_FLOOR = 1.5
+# Cosine between the axis of a hole and z that is along z.
+UPRIGHT = 0.999
+
+
+@dataclass
+class Pull:
+    """What pulls at the floor along a rim: the integral of its directions outwards (3), mm, and whether a holder is on
+    the flange there; else the leg is wiped."""
+
+    along: np.ndarray
+    held: bool
+
+
+@dataclass
+class Pin:
+    """A hole of the floor in which a pin locates the sheet: words, place in plan (2), mm."""
+
+    words: str
+    place: np.ndarray
+
+
+def needed(tools: "ToolSet", stress: Callable[[float], float], holder: float, options: argparse.Namespace, friction: float
+           ) -> float:
+    """Return the force of the pad, N. stress: by the strain in plane strain, MPa; holder: its force, N."""
+    t = options.thickness
+    middle = tools.shoulder + t / 2
+    length = sum(float(np.linalg.norm(pull.along)) for pull in tools.pulls if pull.held)
+    held = holder / max(length, t) + stress(t / (4 * middle)) * t**2 / (2 * middle) / (2 * friction)
+    centres = tools.shoulder + tools.bend + t
+    clearance = max(options.clearance, CLEARANCE * t)
+    height = max(centres - tools.travel, 0.0)
+    arm = ((centres + clearance)**2 + height**2 - centres**2)**0.5
+    wiped = OF_LEG * stress(t / (4 * (tools.bend + t / 2))) * t**2 / 4 / arm
+    return float(np.linalg.norm(sum(pull.along * (held if pull.held else wiped) for pull in tools.pulls)))
+
+
+def pins(holes: Sequence[Hole], floor: Surface, options: argparse.Namespace) -> list[Pin]:
+    """Return the holes of a level floor, in the coordinates of the placed part, in which pins locate it: the two farthest
+    from each other."""
+    around = points_at(floor.net, np.array([0.0, 1.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0, 1.0]))
+    level = around[..., 2].mean()
+    if np.ptp(around[..., 2]) > options.tolerance:
+        return []
+    matrix = rotation(options.rotate)
+    found = []
+    for hole in holes:
+        axis = matrix @ hole.loop.area / np.linalg.norm(hole.loop.area)
+        place = matrix @ hole.centre + np.array(options.move)
+        over = any(inside(place[None, :2], corners)[0] for corners in around[..., :2])
+        if abs(axis[2]) > UPRIGHT and over and abs(place[2] - level) < IN_FLOOR * options.thickness:
+            found.append(Pin(hole.words, place[:2]))
+    if len(found) < 2:
+        return found
+    apart = np.linalg.norm([[a.place - b.place for b in found] for a in found], axis=2)
+    first, second = divmod(int(apart.argmax()), len(found))
+    return [found[first], found[second]]
