@@ -15,8 +15,9 @@ from viewer_run import SHAPE, viewed_run
 from dd3 import forming_limit
 from dd3.plot.sheet import Run
 from dd3.sheet import Sheet
+from dd3.viewer import scene as scenes
 from dd3.viewer.arrays import Arrays
-from dd3.viewer.scene import Scene, upward_normals
+from dd3.viewer.scene import Scene, kept_steps, places_of, upward_normals
 from dd3.viewer.skin import LOWER_SIDE, RIM, UPPER_SIDE, skin_of, turned
 
 
@@ -103,6 +104,35 @@ def test_springback_of_the_view(scene):
     assert (np.abs(along) <= distance + 1e-4).all() and along.min() < 0 < along.max()
     normals = upward_normals(made.sheet, 0)
     assert np.abs(np.linalg.norm(normals, axis=1) - 1).max() < 1e-12 and (normals[:, 2] > 0.7).all()
+
+
+def test_places(scene):
+    """Check the places of the verdict: at the last step of their phase, and none where nothing was measured."""
+    made, _, _ = scene
+    place = {"distance": 0.123, "tool": "punch", "node": 7, "position": [1.0, 2.0, 3.0]}
+    closing = {"punches": [{"tool": "punch", "off_tools": place, "off_walls": None, "path_left": place}],
+               "holders": [{"tool": "ring", "wave": place, "beyond": None}]}
+    job = {"phases": [{"name": "draw", "result": {"closing": closing}}, {"name": "free", "result": {}}], "warnings": []}
+    found = list(places_of(job, made.pictures))
+    assert [one["text"] for one in found] == ["draw: farthest from the tools at the end of the path of punch, 0.12 mm",
+                                              "draw: path left of punch is shortest, 0.12 mm",
+                                              "draw: highest wave under ring, 0.12 mm"]
+    assert all(one["step"] == 0 and one["position"] == [1.0, 2.0, 3.0] for one in found)
+
+
+def test_kept_steps(scene, monkeypatch):
+    """Check that steps between the ends of phases are left out of a run with too many values, and none of another."""
+    made, _, _ = scene
+    assert kept_steps(made.sheet) == [0, 1]
+    values = sum(int(np.prod(data.shape[1:])) for data in made.sheet.grid["PointData"].values())
+    monkeypatch.setattr(scenes, "MOST", 4 * values * np.prod(SHAPE))
+    monkeypatch.setattr(made.sheet, "count", 9)
+    monkeypatch.setattr(made.sheet, "last", 8)
+    monkeypatch.setattr(made.sheet, "mesh_number", lambda step: 0)
+    made.sheet.file.close()
+    made.sheet.file = {"job": {"phase": np.array([1, 1, 1, 2, 2, 2, 2, 2, 2])}}
+    made.sheet.grid = {"PointData": {"all": np.zeros((1, values))}, "NumberOfPoints": [np.prod(SHAPE)]}
+    assert kept_steps(made.sheet) == [0, 2, 4, 8]
 
 
 def test_page(tmp_path):

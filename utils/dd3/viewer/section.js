@@ -17,6 +17,7 @@ class Section {
     this.profile = newChart(element("profile_chart"), "", "", { equal: true, tell, hover: hover("profile") });
     this.along = newChart(element("along_chart"), "length along the upper face (mm)", "", {
       tell,
+      legend: false,
       hover: hover("along"),
     });
   }
