@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Print what is installed: versions, program, examples, library of the laws, and the Python packages that are used.
 
-    dd3 info
+    dd3 info                 for a report of an error: program, examples, optional packages
 """
 
 import platform

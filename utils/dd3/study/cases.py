@@ -51,15 +51,15 @@ def arguments(step: str, words: Sequence[str]) -> argparse.Namespace:
     options = parser.parse_args(words)
     options.cases = (options.cases or places.examples() / "bending_study" / "cases.csv").resolve()
     options.work = options.work.resolve()
-    if step != "table":
-        options.program = programs.find_program(options.program)
     return options
 
 
 def print_command(words: Sequence[str]) -> None:
     """Print the command of a case."""
     options = arguments("command", words)
-    print(shlex.join(command(row_of(read_cases(options.cases), options), options, options.work / options.case)))
+    row = row_of(read_cases(options.cases), options)
+    options.program = programs.find_program(options.program)
+    print(shlex.join(command(row, options, options.work / options.case)))
 
 
 def read_cases(path: Path) -> dict[str, Row]:
@@ -112,6 +112,7 @@ def run_case(words: Sequence[str]) -> None:
     options = arguments("case", words)
     cases = read_cases(options.cases)
     row = row_of(cases, options)
+    options.program = programs.find_program(options.program)
     folder = options.work / options.case
     note = folder / NOTE
     call, deck = command(row, options, folder), digest(*deck_files(options))
