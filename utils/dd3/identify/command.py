@@ -161,7 +161,7 @@ def draw(options: argparse.Namespace, text: str, data: Sequence[Datum], curve: A
         path = Path(folder) / "material.dat"
         path.write_text(re.sub(r"  backstress = .*\n", "", text), encoding="utf-8")
         figure = picture([path], options.program, 0.2 if curve is None else max(curve[0].max(), 0.02))
-    figure.legends[0].remove()  # each panel has its own
+    figure.axes[-1].get_legend().remove()  # each panel has its own
     axes = figure.axes
     if options.backstress:
         for line in list(axes[0].lines):
