@@ -114,4 +114,4 @@ def test_pad():
     from argparse import Namespace
 
     from dd3.tool import beads_of
-    assert "no holder" in beads_of(ToolSet(), Namespace(), "steel").reason
+    assert "no holder" in beads_of(ToolSet(), Namespace()).reason
