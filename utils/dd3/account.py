@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The account that a reader gives of its file: what it did not use, with the place of each.
 
-A reader enters each card, entity or block of its file with its fields, and reads the fields from the entry. A field that
-was never read is named by `Account.left_out`, and an entry of which none was read is named as a whole: a reader needs
-no list of what it does not know.
+A reader enters each card, entity or block of its file with its fields, and reads the fields from the entry. A field
+that was never read is named by `Account.left_out`, and an entry of which none was read is named as a whole: a reader
+needs no list of what it does not know.
 """
 from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import dataclass, field

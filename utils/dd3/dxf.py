@@ -109,7 +109,8 @@ def lines_of(path: Path) -> dict[str, int]:
     if data.startswith(b"AutoCAD Binary DXF"):
         return {}
     lines = [line.strip() for line in data.decode("utf-8", errors="replace").splitlines()]
-    found, start = {}, 0
+    found: dict[str, int] = {}
+    start = 0
     for i in range(0, len(lines) - 1, 2):
         if lines[i] == "0":
             start = i + 2

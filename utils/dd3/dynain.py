@@ -7,13 +7,14 @@
 
 Shells of four nodes become elements solid_shell around their mid-surface; those that are numbered the other way round
 than the others are turned over. A node of one shell on the edge of another must be bound in its middle by
-*CONSTRAINED_ADAPTIVITY, as in an adaptive mesh; others would hang there, and the sheet tear. The folder that is written stands for that of a run: *START takes the sheet from it (from = op10.out), so
-that it is released, or formed further. Stresses and plastic strains at heights between those of the file are
-interpolated; --points gives the points through the thickness (those of the file). Stresses are in MPa, or as --units
-says, which is asked for where they are hardly those of a metal in MPa. Back-stresses start at zero. The initial blank
-is not known: strains and thinning count from the formed sheet, and *TRIM does not cut it. Node sets are z_min and
-z_max, the faces against and along the normals of the shells, for tools that touch them from below and from above, rim,
-and all. What of the file is not used is listed with its line.
+*CONSTRAINED_ADAPTIVITY, as in an adaptive mesh; others would hang there, and the sheet tear. The folder that is written
+stands for that of a run: *START takes the sheet from it (from = op10.out), so that it is released, or formed further.
+Stresses and plastic strains at heights between those of the file are interpolated; --points gives the points through
+the thickness (those of the file). Stresses are in MPa, or as --units says, which is asked for where they are hardly
+those of a metal in MPa. Back-stresses start at zero. The initial blank is not known: strains and thinning count from
+the formed sheet, and *TRIM does not cut it. Node sets are z_min and z_max, the faces against and along the normals of
+the shells, for tools that touch them from below and from above, rim, and all. What of the file is not used is listed
+with its line.
 
 The rolling direction is the one given (--rolling, x), turned into the sheet.
 """
@@ -23,13 +24,13 @@ from pathlib import Path
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
+from dd3.bound import Bound, rings
 from dd3.command import new_parser
 from dd3.dyna.cards import LINE, TEN, Card, Reader, split
 from dd3.dyna.laws import UNITS
 from dd3.dyna.mesh import Cell, DynaMesh
 from dd3.dyna.parameters import as_number
 from dd3.errors import Problem
-from dd3.bound import Bound, rings
 from dd3.hanging import edges_of_hung, hanging_nodes
 from dd3.programs import made_folder
 from dd3.sheet_state import COLUMNS, NAME, SheetState, write_state

@@ -21,6 +21,7 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -101,9 +102,10 @@ def read_curve(path: str | Path, engineering: bool = False, account: Account | N
     if len(rows) < 2:
         raise Problem(f"{path}: expected at least 2 points of the forming limit curve, got {len(rows)}")
     rows.sort(key=lambda row: row.values[0])
-    for before, row in zip(rows, rows[1:]):
+    for before, row in pairwise(rows):
         if row.values[0] == before.values[0]:
-            raise row.line.problem(row.words[0], f"the minor strain {row.words[0][0]} is that of {before.line.where} too",
+            raise row.line.problem(row.words[0],
+                                   f"the minor strain {row.words[0][0]} is that of {before.line.where} too",
                                    "one major strain for each minor strain")
     minor, major = np.array([row.values for row in rows]).T
     if engineering:

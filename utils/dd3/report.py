@@ -502,7 +502,8 @@ def add_refinements(report: Report) -> None:
              "yes" if change["repeated"] else "no") for change in changes]
     content = "".join("<tr>" + "".join(f"<td>{html.escape(str(cell))}</td>" for cell in row) + "</tr>\n"
                       for row in rows)
-    report.add("Refinement", picture + "<table><tr>" + "".join(f"<th>{name}</th>" for name in heading) + f"</tr>\n{content}</table>")
+    names = "".join(f"<th>{name}</th>" for name in heading)
+    report.add("Refinement", f"{picture}<table><tr>{names}</tr>\n{content}</table>")
 
 
 def add_warnings(report: Report) -> None:

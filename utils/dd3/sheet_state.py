@@ -21,8 +21,8 @@ PLACE = ((0, 0), (1, 1), (2, 2), (1, 2), (2, 0), (0, 1))
 class SheetState:
     """Initial and present positions of the nodes (n, 3), mm; elements (m, 8) of node numbers; the thickness, mm; stress
     tensors in global axes (m, points, 3, 3), MPa; plastic strains (m, points); axes of orthotropy as the columns of
-    (m, points, 3, 3); names of materials, and that of each element; the points of a column; sets of nodes by name; bound
-    nodes and the ends of their edges (n, 3)."""
+    (m, points, 3, 3); names of materials, and that of each element; the points of a column; sets of nodes by name;
+    bound nodes and the ends of their edges (n, 3)."""
 
     initial: np.ndarray
     points: np.ndarray

@@ -83,7 +83,8 @@ def rotation(line: Line, found: Springback, normal: np.ndarray) -> float:
     parts = np.diff(length(drawn))
     weights = np.append(parts, 0.0) + np.insert(parts, 0, 0.0)
     a, b = (points - np.average(points, axis=0, weights=weights) for points in (drawn, free))
-    return float(np.degrees(np.arctan2(weights @ (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]), weights @ (a * b).sum(axis=1))))
+    return float(np.degrees(np.arctan2(weights @ (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]),
+                                       weights @ (a * b).sum(axis=1))))
 
 
 def opening(line: Line, found: Springback, normal: np.ndarray) -> tuple[float, float]:

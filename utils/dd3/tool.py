@@ -413,9 +413,9 @@ def make_set(options: argparse.Namespace, command: str) -> dict[str, report.Repo
         reports[str(options.target / DRAW)].warnings += set_material.warnings(options.material)
         if tools.ratio > RATIO:
             reports[str(options.target / DRAW)].warnings.append(
-                f"the drawing ratio, the root of the area of the blank over that of the punch, is {tools.ratio:.3g}: mild "
-                f"steel is drawn in one stroke up to about {RATIO:g}. Take a smaller --margin or --shoulder, or draw it "
-                "in two strokes")
+                f"the drawing ratio, the root of the area of the blank over that of the punch, is {tools.ratio:.3g}: "
+                f"mild steel is drawn in one stroke up to about {RATIO:g}. Take a smaller --margin or --shoulder, or "
+                "draw it in two strokes")
         check_deck(reports[str(options.target / DRAW)], options)
         if options.curves:
             reports[str(options.target / trim_deck.DECK)] = report.Report([f"  {'curves':<10} {len(options.curves)}"])
@@ -462,7 +462,7 @@ def draw_in_of(run: Path) -> tuple[np.ndarray, np.ndarray]:
 
 
 def check_deck(result: report.Report, options: argparse.Namespace) -> None:
-    """Add what the program says of the input file of a set to its report: memory, elements, time, warnings and errors."""
+    """Add what the program says of the input file of a set to its report: memory, elements, time, warnings, errors."""
     program = program_of(options)
     if not program and options.program:
         result.errors.append(f"{options.program}: no such program")

@@ -82,9 +82,9 @@ def formed(phases: Sequence[Ended], waves: float | None) -> list[Item]:
 
 def holders(phases: Sequence[Ended], limit: float | None) -> list[Item]:
     """Judge the waves under the holders at the end of the forming, and tell of the sheet beyond them."""
-    last = {holder["tool"]: (phase, holder) for phase in phases for holder in phase.closing["holders"]}
+    last = {holder["tool"]: holder for phase in phases for holder in phase.closing["holders"]}
     items = []
-    for tool, (phase, holder) in last.items():
+    for tool, holder in last.items():
         wave, lift = holder["wave"], holder["lift"]
         if wave is None:
             continue

@@ -15,9 +15,10 @@ not convex, have an infinite cost. The result is a file with one *MATERIAL block
     dd3 identify steel --hardening voce --backstress lemaitre_chaboche --curve reversal.csv
 
 The curve is a table: logarithmic strain and true stress (MPa) in two columns, or in those that its heading names,
-separated by commas, semicolons, tabs or blanks, with quotes or without, with a decimal point, or a comma where commas do
-not separate. The heading may give units (%, GPa). Other columns, and rows above the numbers, are listed as left out. Each line of the file of --data gives one of the values of the
-options --r, --stress and so on, such as `r 45 1.51` or `biaxial_stress 1.18 2`; # begins a comment.
+separated by commas, semicolons, tabs or blanks, with quotes or without, with a decimal point, or a comma where commas
+do not separate. The heading may give units (%, GPa). Other columns, and rows above the numbers, are listed as left out.
+Each line of the file of --data gives one of the values of the options --r, --stress and so on, such as `r 45 1.51` or
+`biaxial_stress 1.18 2`; # begins a comment.
 """
 
 import argparse
@@ -161,7 +162,8 @@ def draw(options: argparse.Namespace, text: str, data: Sequence[Datum], curve: A
         path = Path(folder) / "material.dat"
         path.write_text(re.sub(r"  backstress = .*\n", "", text), encoding="utf-8")
         figure = picture([path], options.program, 0.2 if curve is None else max(curve[0].max(), 0.02))
-    figure.axes[-1].get_legend().remove()  # each panel has its own
+    if legend := figure.axes[-1].get_legend():
+        legend.remove()  # each panel has its own
     axes = figure.axes
     if options.backstress:
         for line in list(axes[0].lines):

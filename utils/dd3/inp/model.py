@@ -209,8 +209,7 @@ class Model:
         """Add nodes that are bound to the mean of two others; other constraints are left out."""
         block.entry.use()
         for row in block.data():
-            kind, *words = (*filter(None, row.words), "", "")
-            nodes = [word for word in words if word]
+            kind, *nodes = [word for word in row.words if word] or [""]
             if kind.upper() == "LINEAR" and len(nodes) == 3 and all(word.isdecimal() for word in nodes):
                 self.scope.bound.append(tuple(label(word, row.place, block.shown) for word in nodes))
             else:

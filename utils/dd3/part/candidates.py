@@ -90,7 +90,8 @@ def optimal(normal: np.ndarray, mean: np.ndarray) -> list[tuple[str, np.ndarray]
 
 def with_draft(normals: np.ndarray, mean: np.ndarray, start: np.ndarray) -> np.ndarray:
     """Return the direction of the largest projected area from which all normals have a draft of 10 degrees, by
-    projection on a cone that is narrower by this along the direction of the step before; another one if there is none."""
+    projection on a cone that is narrower by this along the direction of the step before; another one if there is
+    none."""
     for _ in range(STEPS):
         narrower = normals - np.sin(np.radians(ENOUGH + WIDER)) * start
         start = unit(mean + narrower.T @ nnls(narrower.T, -mean)[0])

@@ -105,7 +105,7 @@ def closed_part(gmsh: Any, reading: Reading, faces: list[int]) -> Closed | None:
 
 def extruded(gmsh: Any, reading: Reading, profile: Profile, faces: list[int], openings: list[Opening],
              curves: list[np.ndarray]) -> Closed:
-    """Return the extruded profile of a part, longer than the part so that the blank covers it and is cut at its ends."""
+    """Return the extruded profile of a part, longer than the part: the blank covers it and is cut at its ends."""
     beyond = BEYOND_ENDS * (reading.sheet.thickness or 0.0)
     profile = replace(profile, low=profile.low - beyond, high=profile.high + beyond)
     with silence():
@@ -113,7 +113,8 @@ def extruded(gmsh: Any, reading: Reading, profile: Profile, faces: list[int], op
         text = written_by(gmsh)
         read_text(gmsh, text)
     numbers, edges = faces_of(gmsh, profile), edges_of(gmsh, profile, reading.shape)
-    notes = [*reading.left_out, *reading.notes, f"profile of the bent part, continued by {beyond:.3g} mm beyond its ends",
+    notes = [*reading.left_out, *reading.notes,
+             f"profile of the bent part, continued by {beyond:.3g} mm beyond its ends",
              *(["filled: " + summary([one.words for one in openings])] if openings else [])]
     return Closed(text, numbers, [tag for tag, number in numbers.items() if number in set(faces)], edges, openings,
                   curves, notes)
@@ -201,8 +202,9 @@ def side_of(gmsh: Any, shape: Shape, text: str, faces: set[int], fixed: set[int]
     topology = Topology.of(text)
     tags = [tag for _, tag in gmsh.model.getEntities(2)]
     number = numbers_of(gmsh, tags, shape)
-    for tag in [tag for tag in tags if tag not in number] if changed else []:
-        number[tag] = number_by_vertices(corners(gmsh, tag), *changed, set(number.values()), SAME * shape.size)
+    if changed:
+        for tag in [tag for tag in tags if tag not in number]:
+            number[tag] = number_by_vertices(corners(gmsh, tag), *changed, set(number.values()), SAME * shape.size)
     edges = dict(zip((part.record for part in topology.found("Ed")), (tag for _, tag in gmsh.model.getEntities(1))))
     chosen = [(part, number[tag]) for part, tag in zip(topology.found("Fa"), tags) if number.get(tag) in faces]
     return Side(gmsh, topology, [part for part, _ in chosen], [one for _, one in chosen], fixed, edges,

@@ -138,8 +138,8 @@ class Side:
         pairs = self.pairs(owners, left)
         if bare or pairs is None or (left and not pairs):
             return False
-        merged = [self.merged(*pair) for pair in pairs]
-        if any(one is None for one in merged):
+        merged = [new for pair in pairs if (new := self.merged(*pair)) is not None]
+        if len(merged) < len(pairs):
             return False
         for i, wire in drop:
             face = records[self.faces[i].record]
@@ -153,9 +153,9 @@ class Side:
         self.became |= first | {pair[2]: new for pair, new in zip(pairs, merged)}
         gone = left | {pair[2] for pair in pairs}
         for i in {i for edge in {*first, *gone} for i in owners[edge]}:
-            for wire in records[self.faces[i].record].parts:
-                records[wire.record].parts = [replace(part, record=first.get(part.record, part.record))
-                                              for part in records[wire.record].parts if part.record not in gone]
+            for one in records[self.faces[i].record].parts:
+                records[one.record].parts = [replace(part, record=first.get(part.record, part.record))
+                                             for part in records[one.record].parts if part.record not in gone]
         kept = [i for i in range(len(self.faces)) if i not in island]
         self.faces, self.numbers = [self.faces[i] for i in kept], [self.numbers[i] for i in kept]
         return True
@@ -225,7 +225,7 @@ class Side:
         gap = np.linalg.norm(self.end(edge, vertex) - self.end(other, vertex_of_other))
         own = np.linalg.norm(np.diff(self.points(edge, low, high, COMPARED), axis=0), axis=1).sum()
         reach = 2.0 * (gap + length) / own * (high - low) * (1 if forward else -1)
-        found, away = self.nearest(edge, piece, start, start + reach)
+        _, away = self.nearest(edge, piece, start, start + reach)
         if away.max() > ON_CURVE / SAME * self.near:
             return None
         end = float(self.nearest(edge, self.end(other, far.record)[None], start, start + reach)[0][0])

@@ -5,6 +5,7 @@ Such a part without its holes, notches, reliefs beside bends and the different w
 extruded along the lines over the length of the part.
 """
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -65,8 +66,8 @@ class Chain:
 
 @dataclass
 class Profile:
-    """Profiles of both sides of a sheet; unit vectors across the lines of its bends, and the one along (3, 3); where the
-    part begins and ends along them, mm."""
+    """Profiles of both sides of a sheet; unit vectors across the lines of its bends, and the one along (3, 3); where
+    the part begins and ends along them, mm."""
 
     chains: list[Chain]
     axes: np.ndarray
@@ -110,7 +111,7 @@ def chain_of(shape: Shape, faces: list[int], axes: np.ndarray, near: float) -> C
     order = in_order(len(pieces), list(joints))
     if not order:
         return None
-    between = [joints[min(pair), max(pair)] for pair in zip(order, order[1:])]
+    between = [joints[min(pair), max(pair)] for pair in pairwise(order)]
     chosen = [pieces[i] for i in order]
     points = np.array([far_end(chosen[0], between[0]), *between, far_end(chosen[-1], between[-1])])
     # Each piece is between its points: no leg begins in the middle of another one.
@@ -231,11 +232,12 @@ def edges_of(gmsh: Any, profile: Profile, shape: Shape) -> dict[int, int]:
     """Return the edges of an extruded profile in the session by the numbers in the part of those between its faces."""
     tags = [tag for _, tag in gmsh.model.getEntities(1)]
     centres = np.array([gmsh.model.occ.getCenterOfMass(1, tag) for tag in tags])
-    found = {}
+    found: dict[int, int] = {}
     for chain in profile.chains:
         for k, joint in enumerate(chain.points[1:-1]):
             place = profile.place(joint, (profile.low + profile.high) / 2)
             tag = tags[int(np.linalg.norm(centres - place, axis=1).argmin())]
             sides = set(chain.pieces[k].faces), set(chain.pieces[k + 1].faces)
-            found |= {number: tag for number, edge in shape.edges.items() if all(side & set(edge.faces) for side in sides)}
+            found |= {number: tag for number, edge in shape.edges.items()
+                      if all(side & set(edge.faces) for side in sides)}
     return found

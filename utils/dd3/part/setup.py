@@ -33,9 +33,9 @@ REVERSED = 135.0
 
 def read_for_tools(options: argparse.Namespace) -> Reading:
     """Read the part of the options, and set `thickness`, `rotate` and `taken`, the faces that one tool touches, where
-    they are not given, `closed`, the part without its openings if it has any, `curves` of its rims, `roles` of the faces,
-    `angles` of sharp edges, `holes`, and `advice` for where no die can be made around it. The punch comes along z after the
-    rotation."""
+    they are not given, `closed`, the part without its openings if it has any, `curves` of its rims, `roles` of the
+    faces, `angles` of sharp edges, `holes`, and `advice` for where no die can be made around it. The punch comes along
+    z after the rotation."""
     given = options.toward is not None or bool(options.rotate)
     up = rotation(options.rotate).T @ UP if options.toward is None else unit(np.array(options.toward, float))
     progress = Progress(options.source.name)
@@ -109,8 +109,9 @@ def take_side(reading: Reading, options: argparse.Namespace) -> None:
 def roles_of_block(reading: Reading, options: argparse.Namespace) -> dict[int, str]:
     """Return what those faces of a block that the user has chosen are for."""
     shape, own = reading.shape, [tag for tag in numbers_of(options.faces) if tag in reading.shape.tags]
-    loops = find_loops(shape, own)
-    return {tag: role.name for tag, role in read_roles(shape, replace(reading.direction, upper=own), loops[0]).items()}
+    assert reading.direction
+    direction, outer = replace(reading.direction, upper=own), find_loops(shape, own)[0]
+    return {tag: role.name for tag, role in read_roles(shape, direction, outer).items()}
 
 
 def angles_of_block(gmsh: Any, reading: Reading, options: argparse.Namespace) -> dict[int, float]:

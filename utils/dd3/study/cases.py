@@ -6,8 +6,8 @@
     dd3 study table               gather the finished cases in bending_study.out/results.csv
 
 A case is a row of bending_study/cases.csv of the examples, or of --cases. Its columns other than `case` and `set` are
-parameters of study.dat in the same folder; an empty cell keeps the default of study.dat. A case is done when its folder has a done.json: exit code 0 means that the run reached its end, 3 that it
-stopped before. Both are results.
+parameters of study.dat in the same folder; an empty cell keeps the default of study.dat. A case is done when its folder
+has a done.json: exit code 0 means that the run reached its end, 3 that it stopped before. Both are results.
 """
 
 import argparse

@@ -54,8 +54,8 @@ class Bead:
 
 @dataclass
 class Beads:
-    """Draw-beads of a set of tools: lines, restraint, N/mm, and this over the largest force of the sheet in plane strain;
-    radius, mm; why there are none."""
+    """Draw-beads of a set of tools: lines, restraint, N/mm, and this over the largest force of the sheet in plane
+    strain; radius, mm; why there are none."""
 
     lines: list[Bead] = field(default_factory=list)
     force: float = 0.0
@@ -74,12 +74,13 @@ class Beads:
         if not self.lines:
             return [("beads", f"none, as {self.reason}; without --beads the blank has a smaller margin")]
         total = self.force * sum(bead.length for bead in self.lines)
-        return [("beads", f"restraint {self.force:.3g} N/mm, {100 * self.part:.2g} % of the largest force of the sheet in "
-                 f"plane strain, {total:.3g} N in all: round beads of {self.radius:g} mm radius"),
-                ("", "they may tear a part that does without: compare with --set bead=0. They lift the holder, which is "
-                 "not taken into account"),
+        return [("beads", f"restraint {self.force:.3g} N/mm, {100 * self.part:.2g} % of the largest force of the sheet "
+                 f"in plane strain, {total:.3g} N in all: round beads of {self.radius:g} mm radius"),
+                ("", "they may tear a part that does without: compare with --set bead=0. They lift the holder, which "
+                 "is not taken into account"),
                 *((f"bead_{number}", f"{bead.length:.3g} mm, from x y {pair(bead.points[0])} to "
-                   f"{pair(bead.points[-1])}, draw-in up to {bead.draw_in:.3g} mm") for number, bead in enumerate(self.lines, 1))]
+                   f"{pair(bead.points[-1])}, draw-in up to {bead.draw_in:.3g} mm")
+                  for number, bead in enumerate(self.lines, 1))]
 
 
 def pair(point: np.ndarray) -> str:

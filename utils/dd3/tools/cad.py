@@ -525,7 +525,8 @@ def read_cad(gmsh: Any, path: Path, options: argparse.Namespace, progress: Progr
     owner = {tag: name for name, faces in model.parts for tag in faces}
     model.origin = [file_tag[tag] for tag in model.tags]
     model.names = [f"face {old} ({gmsh.model.getType(2, tag)}"
-                   + (f", {owner.get(tag, owner.get(old))})" if len(model.parts) > 1 else ")") if old else "fillet of a sharp edge"
+                   + (f", {owner.get(tag, owner.get(old))})" if len(model.parts) > 1 else ")")
+                   if old else "fillet of a sharp edge"
                    for tag, old in zip(model.tags, model.origin)]
     gmsh.model.removeEntities(gmsh.model.getEntities(3))
     gmsh.model.removeEntities(others)

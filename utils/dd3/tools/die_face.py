@@ -24,8 +24,8 @@ SHORTEST = 0.5
 OF_DEPTH = 0.25
 # Width of the die beside the part's own flange, over the thickness, at least.
 BESIDE = 4.0
-# Width of the blank beyond the shoulder that is not estimated, and distance of the blank from the border of the die, over
-# the thickness.
+# Width of the blank beyond the shoulder that is not estimated, and distance of the blank from the border of the die,
+# over the thickness.
 WIDE = 40.0
 INSET = 2.0
 # Kink at joints of the die face above which the rims are divided further, degrees; least part of the length at once,

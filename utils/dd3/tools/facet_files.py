@@ -73,7 +73,7 @@ def read_stl(path: Path) -> Facets:
 def is_text(data: bytes) -> bool:
     """Tell whether an STL file is a text: a binary one may begin with "solid" as well, but has other bytes after its
     header, or the length that its header gives."""
-    if not data.removeprefix(b"\xef\xbb\xbf").lstrip()[:5].lower() == b"solid":
+    if data.removeprefix(b"\xef\xbb\xbf").lstrip()[:5].lower() != b"solid":
         return False
     count = int.from_bytes(data[80:84], "little") if len(data) >= 84 else -1
     if len(data) == 84 + 50 * count:

@@ -52,8 +52,8 @@ class Pin:
     place: np.ndarray
 
 
-def needed(tools: "ToolSet", stress: Callable[[float], float], holder: float, options: argparse.Namespace, friction: float
-           ) -> float:
+def needed(tools: "ToolSet", stress: Callable[[float], float], holder: float, options: argparse.Namespace,
+           friction: float) -> float:
     """Return the force of the pad, N. stress: by the strain in plane strain, MPa; holder: its force, N."""
     t = options.thickness
     middle = tools.shoulder + t / 2
@@ -68,8 +68,8 @@ def needed(tools: "ToolSet", stress: Callable[[float], float], holder: float, op
 
 
 def pins(holes: Sequence[Hole], floor: Surface, options: argparse.Namespace) -> list[Pin]:
-    """Return the holes of a level floor, in the coordinates of the placed part, in which pins locate it: the two farthest
-    from each other."""
+    """Return the holes of a level floor, in the coordinates of the placed part, in which pins locate it: the two
+    farthest from each other."""
     around = points_at(floor.net, np.array([0.0, 1.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0, 1.0]))
     level = around[..., 2].mean()
     if np.ptp(around[..., 2]) > options.tolerance:

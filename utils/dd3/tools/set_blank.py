@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blank of a part: the estimate in one step of `dd3 unfold` of what the sheet has covered at the end of the draw, with a
-margin."""
+"""Blank of a part: the estimate in one step of `dd3 unfold` of what the sheet has covered at the end of the draw, with
+a margin."""
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -18,7 +18,8 @@ TRIANGLES = {8: 1000.0, 4: 2000.0, 2: np.inf}
 # Exponent of the hardening law of the estimate. With that of a mild steel, 0.2, the areas of two trays are within 0.4 %
 # of these, and it takes four times as long.
 EXPONENT = 0.5
-# Distance over the thickness below which nodes become one: triangles that are much smaller than others hinder the estimate.
+# Distance over the thickness below which nodes become one: triangles that are much smaller than others hinder the
+# estimate.
 NEAR = 0.1
 # Largest distance of the simplified outline from the outline, over the margin.
 SIMPLE = 0.1

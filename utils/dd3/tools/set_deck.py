@@ -28,8 +28,8 @@ FRICTION = 0.1
 # Acceleration on the earth, mm/s2.
 EARTH = 9810.0
 DECK = """# Draws {part} and releases it; tools by {command}
-# The highest point of the die's binder, without a holder that of the die, is at z = 0; the punch starts at the blank and
-# moves down.
+# The highest point of the die's binder, without a holder that of the die, is at z = 0; the punch starts at the blank
+# and moves down.
 *TITLE
   {part}
 
@@ -163,7 +163,8 @@ def deck(options: argparse.Namespace, tools: ToolSet, beads: Beads, command: str
                        light="  gravity = 0 0 0\n" if weighs else "", origin=pair(low), size=pair(high - low),
                        tools="".join(TOOL.format(name=name, contact=CONTACT[name]) for name in tools.surfaces),
                        support=support, closing=closing,
-                       clamp=CLAMP.format(presses="".join(presses), free=FREE if tools.closing else "") if pressed else "")
+                       clamp=CLAMP.format(presses="".join(presses), free=FREE if tools.closing else "")
+                       if pressed else "")
 
 
 def write_blank(folder: Path, blank: Blank, part: str) -> None:
@@ -180,7 +181,8 @@ def said(options: argparse.Namespace, blank: Blank) -> str:
         density, of = set_material.STEEL_DENSITY, " of steel"
     weight = 1e6 * blank.area * options.thickness * density
     x, y = np.ptp(blank.box, axis=0)
-    return f"{x:.4g} x {y:.4g} mm, {blank.area:.4g} mm2, {weight:.3g} g{of}" + (f", cut along {BLANK}" if blank.cut else "")
+    return f"{x:.4g} x {y:.4g} mm, {blank.area:.4g} mm2, {weight:.3g} g{of}" + (
+        f", cut along {BLANK}" if blank.cut else "")
 
 
 def pair(values: np.ndarray) -> str:
@@ -222,7 +224,8 @@ def notes(options: argparse.Namespace, tools: ToolSet) -> list[tuple[str, str]]:
             lines.append(("pin", "none, as the floor is not level or has no hole: pilot holes would locate the blank"))
     if tools.closing:
         deep = sag(options, tools.blank)
-        lines.append(("weight", "left out, as the material has no density: nothing lays the blank on the die" if deep is None else
-                      "the blank is laid on the die by a phase with gravity; on two supports at its ends it would sag by "
-                      f"up to {deep:.2g} mm"))
+        lines.append(("weight", "left out, as the material has no density: nothing lays the blank on the die"
+                      if deep is None else
+                      "the blank is laid on the die by a phase with gravity; on two supports at its ends it would sag "
+                      f"by up to {deep:.2g} mm"))
     return lines

@@ -44,7 +44,8 @@ def found(path: Path | None) -> Path | None:
         raise Problem(f"{path}: no such file")
     file = library() / f"{path.name.removesuffix('.dat')}.dat"
     if not file.is_file():
-        raise Problem(f"{path}: no such file, and no material of the library {library()}\n  expected: {' '.join(names())}")
+        raise Problem(f"{path}: no such file, and no material of the library {library()}\n"
+                      f"  expected: {' '.join(names())}")
     return file
 
 
@@ -91,16 +92,16 @@ def said(path: Path | None) -> tuple[str, str]:
     """Return the line of the report on the material."""
     if path is not None:
         return "material", f"{name_of(path)}, of {path}"
-    return "material", ("a mild steel is assumed, von Mises, Swift K=530 Y0=150 n=0.22: give yours by --material FILE, or "
-                        f"by its name in {library()}, such as dc06 (a mild steel), dp600 or aa6016_t4_yld2004")
+    return "material", ("a mild steel is assumed, von Mises, Swift K=530 Y0=150 n=0.22: give yours by --material FILE, "
+                        f"or by its name in {library()}, such as dc06 (a mild steel), dp600 or aa6016_t4_yld2004")
 
 
 def warnings(path: Path | None) -> list[str]:
     """Return what is to be said against a material: one without hardening, as files of yield criteria have it."""
     if path is None or (block_of(path).value("hardening") or "").split()[:1] != ["perfect"]:
         return []
-    return [f"material {name_of(path)}: no hardening (perfect); its file is for the yield criterion: a sheet of it necks "
-            "where it is first stretched. Give it the hardening of your sheet"]
+    return [f"material {name_of(path)}: no hardening (perfect); its file is for the yield criterion: a sheet of it "
+            "necks where it is first stretched. Give it the hardening of your sheet"]
 
 
 def stress_of(program: Path, path: Path | None) -> Callable[[float], float]:

@@ -49,10 +49,10 @@ DOWN = np.array([0.0, 0.0, -1.0])
 class ToolSet:
     """Surfaces by the names of the tools, with the highest point of the binder at z = 0, punch and holder at the start
     of their travels; these travels, the height by which the part was moved into the die, the least radius of the die's
-    shoulder, that of all faces of punch and die and that of the punch, mm; force of the pad, N, 0 if it is not estimated;
-    what pulls at a floor, and the holes in which pins locate it; the blank, and the areas in plan of the tools over it,
-    mm2; the drawing ratio, the root of the area of the blank over that of the punch in plan, 0 with open ends or no holder; the
-    largest distances of the faces of punch and die from the CAD, mm; lines of the report."""
+    shoulder, that of all faces of punch and die and that of the punch, mm; force of the pad, N, 0 if it is not
+    estimated; what pulls at a floor, and the holes in which pins locate it; the blank, and the areas in plan of the
+    tools over it, mm2; the drawing ratio, the root of the area of the blank over that of the punch in plan, 0 with open
+    ends or no holder; the largest distances of the faces of punch and die from the CAD, mm; lines of the report."""
 
     surfaces: dict[str, Surface] = field(default_factory=dict)
     travel: float = 0.0
@@ -114,8 +114,8 @@ def refuse_left_out(model: cad.Model, options: argparse.Namespace) -> None:
         both = spans(sorted({*model.origin, *left} - {0}))
         raise Problem(f"{100 * part:.3g} % of what is seen of the block are left out, faces {spans(list(left))}, as "
                       "they do not join the others smoothly. If the block is a tool: "
-                      f"dd3 tool {options.source} tool.bez --toward {options.seen} makes it of all faces. If it has the "
-                      f"shape of a part: --faces {both} takes them too, or choose those that one tool touches")
+                      f"dd3 tool {options.source} tool.bez --toward {options.seen} makes it of all faces. If it has "
+                      f"the shape of a part: --faces {both} takes them too, or choose those that one tool touches")
 
 
 def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
@@ -149,6 +149,7 @@ def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
     result.radius = min(result.shoulder, result.bend, least)
     inset = INSET * options.thickness
     low, high = box_of(face.surface.net)
+    assert face.blank
     result.blank = face.blank.within(np.array([low[:2] + inset, high[:2] - inset]))
     top = float(report.extent(face.surface.net[face.surface.face == len(face.surface.names) - 1])[1][2])
     over = top + options.thickness

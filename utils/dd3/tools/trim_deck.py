@@ -45,9 +45,10 @@ deck = "trim.dat"
 def write(options: argparse.Namespace, height: float) -> None:
     """Write the curves of a part, where the die has it, the input file and the process; `height` is that of the part in
     the coordinates of the tools, mm."""
-    matrix, move = rotation(options.rotate), np.array(options.move) + [0.0, 0.0, height]
+    matrix, move = rotation(options.rotate), np.array(options.move) + np.array([0.0, 0.0, height])
     write_curves(options.target / CURVES, [points @ matrix.T + move for points in options.curves],
                  options.source.name)
-    (options.target / DECK).write_text(TEXT.format(part=options.source.stem, material=set_material.text_of(options.material),
-                                                   curves=CURVES), encoding="utf-8")
+    material = set_material.text_of(options.material)
+    (options.target / DECK).write_text(TEXT.format(part=options.source.stem, material=material, curves=CURVES),
+                                       encoding="utf-8")
     (options.target / PROCESS).write_text(OPERATIONS.format(part=options.source.stem, file=PROCESS), encoding="utf-8")
