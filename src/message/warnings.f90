@@ -162,13 +162,15 @@ contains
           "the part does, if it is deeper than the part by design."), &
       row("W120", "sheet beyond the holder", &
           "When the holder begins to press, the rim of the sheet lies more than a thickness "// &
-          "beyond its outer edge, where nothing keeps the sheet from wrinkling.", &
+          "beyond its outer edge, where nothing keeps the sheet from wrinkling, and no other "// &
+          "tool on that side of the sheet is nearer.", &
           "A larger holder, or a smaller blank."), &
       row("W121", "support that carries a part of the tool force", &
           "A support at a few nodes, which are not all nodes of a plane, carries more than 1 % "// &
           "of the largest force on a tool at the end of the phase, and more than the weight of "// &
-          "the sheet: it shapes the sheet, which it should only hold in its place.", "Supports at other nodes or in fewer "// &
-          "directions; none where tools and friction hold the sheet.")]
+          "the sheet: it shapes the sheet, which it should only hold in its place.", &
+          "Supports at other nodes or in fewer directions; none where tools and friction hold "// &
+          "the sheet.")]
   end function run_warnings
 
   !> Return the notes.
