@@ -170,7 +170,13 @@ contains
           "of the largest force on a tool at the end of the phase, and more than the weight of "// &
           "the sheet: it shapes the sheet, which it should only hold in its place.", &
           "Supports at other nodes or in fewer directions; none where tools and friction hold "// &
-          "the sheet.")]
+          "the sheet."), &
+      row("W123", "sheet that has necked", &
+          "At the end of the run, or where it stops, the sheet is thinned by more than 40 %: "// &
+          "above the forming limits of sheets in plane strain. The strains concentrate within "// &
+          "the length of an element, so that the thinning depends on the mesh.", &
+          "Larger radii, less restraint and friction, a drawing ratio that is smaller; for the "// &
+          "limit of the material itself `dd3 report`.")]
   end function run_warnings
 
   !> Return the notes.
