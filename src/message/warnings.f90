@@ -170,7 +170,11 @@ contains
           "of the largest force on a tool at the end of the phase, and more than the weight of "// &
           "the sheet: it shapes the sheet, which it should only hold in its place.", &
           "Supports at other nodes or in fewer directions; none where tools and friction hold "// &
-          "the sheet.")]
+          "the sheet. `pin`, if it is a locating pin."), &
+      row("W122", "pin that widens its hole", &
+          "The mean bearing pressure of a locating pin, its force over diameter and thickness, "// &
+          "exceeds the yield stress of the sheet there in some increment of the phase.", &
+          "A pad with more force or friction, larger pins, or more of them.")]
   end function run_warnings
 
   !> Return the notes.
@@ -197,7 +201,10 @@ contains
           "The condition of its early end holds at its start.", "Check `until` of the phase."), &
       row("N107", "sheet that is formed to the tools", &
           "At the end of its path the punch is within 0.2 thicknesses of the place where it "// &
-          "would pinch the sheet, which lies on the punch or the tool across.", "None.")]
+          "would pinch the sheet, which lies on the punch or the tool across.", "None."), &
+      row("N108", "force of a locating pin", &
+          "The largest force on a support with `pin` in the phase, and its mean bearing "// &
+          "pressure, which is below the yield stress of the sheet.", "None.")]
   end function notes
 
 end module dd3_message_warnings
