@@ -11,7 +11,7 @@ import pytest
 from helpers import call
 
 from dd3.errors import Problem
-from dd3.tools import pad_force, set_deck, set_material
+from dd3.tools import pad_force, set_deck, set_material, tool_set
 from dd3.tools.pad_force import Pin, Pull
 from dd3.tools.set_blank import Blank
 
@@ -64,6 +64,15 @@ def test_pins():
     text = set_deck.pinned([Pin("round 6", np.array([0.0, 0.0]), 6.0), Pin("round 5", np.array([1.0, 9.0]), 5.0)])
     assert re.findall(r"pin = (.*)", text) == ["6", "5"], text
     assert re.findall(r"fix = (.*)", text) == ["x y", "x"] and "near = 1 9 0" in text, text
+
+
+def test_free_stroke():
+    """Check the stroke over which one of two walls is formed alone, and that closed rims have none."""
+    high, low = (SimpleNamespace(rim=SimpleNamespace(points=np.array([[0.0, y, z], [9.0, y, z]]), closed=False))
+                 for y, z in ((-30.0, 25.0), (28.0, 15.0)))
+    assert tool_set.free_stroke(SimpleNamespace(reaches=[high, low])) == pytest.approx(10.0)
+    low.rim.closed = True
+    assert tool_set.free_stroke(SimpleNamespace(reaches=[high, low])) == 0.0
 
 
 def test_weight(tmp_path):
