@@ -1,8 +1,9 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Force on locating pins, supports of *BOUNDARY with `pin`, and their bearing pressure on the
-!> sheet: the force over diameter and thickness, as of a bolt in a plate. A hole begins to widen where it
-!> exceeds the yield stress (Budynas and Nisbett, Shigley's Mechanical Engineering Design, 2015,
-!> section 8-12); EN 1993-1-8, table 3.10, gives 1.5 times that as the resistance of the plate.
+!> sheet: the force over diameter and thickness, as of a bolt in a plate. A hole begins to widen
+!> where it exceeds the yield stress (Budynas and Nisbett, Shigley's Mechanical Engineering Design,
+!> 2015, section 8-12); EN 1993-1-8, table 3.10, gives 1.5 times that as the resistance of the
+!> plate.
 module dd3_run_pin_load
   use dd3_base_kinds, only : wp
   use dd3_base_message, only : message_list_t
