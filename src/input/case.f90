@@ -223,6 +223,8 @@ module dd3_input_case
     character(len=:), allocatable :: set
     !> Whether x, y, z are fixed.
     logical :: fix(3) = .false.
+    !> Diameter of the locating pin that the support stands for, mm; 0 for none.
+    real(wp) :: pin = 0.0_wp
     type(block_t) :: source
   end type boundary_spec_t
 
@@ -330,6 +332,8 @@ module dd3_input_case
     real(wp) :: trial = 0.0_wp
     !> Whether all tools are released and supports are chosen where they are missing.
     logical :: unload = .false.
+    !> Whether the state at the end is kept for other runs.
+    logical :: keep = .false.
     !> Tools held, and tools that are withdrawn.
     type(tool_name_t), allocatable :: hold(:), release(:)
     !> Tools moved, and tools pressed.

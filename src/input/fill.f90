@@ -251,6 +251,7 @@ contains
     boundary%name = block%name
     boundary%source = block
     boundary%set = block%word("set")
+    if (block%has("pin")) boundary%pin = block%number("pin")
     if (.not. block%has("fix")) return
     associate (entry => block%entry(block%find("fix")))
       do i = 1, size(entry%value)

@@ -170,13 +170,17 @@ contains
           "of the largest force on a tool at the end of the phase, and more than the weight of "// &
           "the sheet: it shapes the sheet, which it should only hold in its place.", &
           "Supports at other nodes or in fewer directions; none where tools and friction hold "// &
-          "the sheet."), &
+          "the sheet. `pin`, if it is a locating pin."), &
+      row("W122", "pin that widens its hole", &
+          "The mean bearing pressure of a locating pin, its force over diameter and thickness, "// &
+          "exceeds the yield stress of the sheet there in some increment of the phase.", &
+          "A pad with more force or friction, larger pins, or more of them."), &
       row("W123", "sheet that has necked", &
           "At the end of the run, or where it stops, the sheet is thinned by more than 40 %: "// &
           "above the forming limits of sheets in plane strain. The strains concentrate within "// &
           "the length of an element, so that the thinning depends on the mesh.", &
-          "Larger radii, less restraint and friction, a drawing ratio that is smaller; for the "// &
-          "limit of the material itself `dd3 report`.")]
+          "Larger radii, less restraint and friction, a smaller drawing ratio; for the limit of "// &
+          "the material itself `dd3 report`.")]
   end function run_warnings
 
   !> Return the notes.
@@ -203,7 +207,10 @@ contains
           "The condition of its early end holds at its start.", "Check `until` of the phase."), &
       row("N107", "sheet that is formed to the tools", &
           "At the end of its path the punch is within 0.2 thicknesses of the place where it "// &
-          "would pinch the sheet, which lies on the punch or the tool across.", "None.")]
+          "would pinch the sheet, which lies on the punch or the tool across.", "None."), &
+      row("N108", "force of a locating pin", &
+          "The largest force on a support with `pin` in the phase, and its mean bearing "// &
+          "pressure, which is below the yield stress of the sheet.", "None.")]
   end function notes
 
 end module dd3_message_warnings

@@ -29,6 +29,8 @@ module dd3_model_phase
     logical :: has_gravity = .false.
     !> Whether this phase or an earlier one unloads the sheet, and no tool acts.
     logical :: unloaded = .false.
+    !> Whether the state at the end is kept for other runs.
+    logical :: keep = .false.
     !> What the phase does to the sets of loads and of pressures, and with the draw-beads.
     type(phase_loads_t) :: loads
     type(phase_pressures_t) :: pressures

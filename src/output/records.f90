@@ -3,6 +3,7 @@
 !> the first writes them, and gives the others its errors.
 module dd3_output_records
   use dd3_base_error, only : error_t, keep_first, share_error
+  use dd3_base_file, only : make_directory
   use dd3_base_ranks, only : broadcast_integers, this_rank
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
@@ -189,7 +190,25 @@ contains
     self%ended = state%phase == size(model%phase)
     if (self%ended) self%restart_increment = -1
     if (.not. allocated(error)) call save(self, model, state, error)
+    if (.not. allocated(error) .and. model%phase(state%phase)%keep) &
+        call keep_phase_end(self, model, state, error)
   end subroutine write_phase_end
+
+  !> Write the state at the end of a phase into a folder of its name, as that of a run that ends
+  !> there: other runs start from it.
+  subroutine keep_phase_end(self, model, state, error)
+    type(records_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(error_t), allocatable, intent(out) :: error
+
+    character(len=:), allocatable :: folder
+
+    folder = self%directory//"/"//model%phase(state%phase)%name
+    if (this_rank() == 0) call make_directory(folder, error)
+    call share_error(error)
+    if (.not. allocated(error)) call write_restart(folder, model, state, .true., error)
+  end subroutine keep_phase_end
 
   !> Write the restart file of a state that is about to change without an increment: a run that
   !> stops before the next one is accepted continues from here.

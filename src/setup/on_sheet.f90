@@ -26,6 +26,7 @@ module dd3_setup_on_sheet
   use dd3_setup_drawbeads, only : new_drawbeads
   use dd3_setup_held_loads, only : check_loads
   use dd3_setup_phases, only : new_phases
+  use dd3_setup_pins, only : check_pins
   use dd3_sheet_sheet, only : sheet_t
   implicit none
   private
@@ -68,6 +69,7 @@ contains
     if (.not. rebuilt) then
       model%undivided_length = undivided_length(model)
       call set_axes(model, case, errors)
+      call check_pins(model, case, mesh, errors)
     end if
     if (errors%count > 0) return
     call find_candidates(model, case, mesh, errors)

@@ -50,7 +50,9 @@ def test_curves(folder, tmp_path):
     """Check the true rims of a tray with a hole in its wall, where the punch ends, also of a part that is turned."""
     said = call("tool", folder / "tray.step", tmp_path, "--rotate", 0, 0, 1, 30, "--move", 5, 0, 3, "--flange", 20)
     curves = read_curves(tmp_path / "trim.txt")
-    assert len(curves) == 2 and 'file = "trim.txt"' in (tmp_path / "trim.dat").read_text()
+    deck = (tmp_path / "trim.dat").read_text()
+    assert len(curves) == 2 and 'file = "trim.txt"' in deck and "from = draw.out/draw " in deck
+    assert "  keep = on\n\n*PHASE springback" in (tmp_path / "draw.dat").read_text()
     punch = read(tmp_path / "punch.bez")
     punch[..., 2] -= punch[..., 3] * float(said.split("travel")[1].split()[0])
     for curve in curves:

@@ -46,10 +46,12 @@ class Pull:
 
 @dataclass
 class Pin:
-    """A hole of the floor in which a pin locates the sheet: words, place in plan (2), mm."""
+    """A hole of the floor in which a pin locates the sheet: words, place in plan (2), and the diameter of the pin, the
+    least size of the hole, mm."""
 
     words: str
     place: np.ndarray
+    diameter: float
 
 
 def needed(tools: "ToolSet", stress: Callable[[float], float], holder: float, options: argparse.Namespace,
@@ -81,7 +83,7 @@ def pins(holes: Sequence[Hole], floor: Surface, options: argparse.Namespace) -> 
         place = matrix @ hole.centre + np.array(options.move)
         over = any(inside(place[None, :2], corners)[0] for corners in around[..., :2])
         if abs(axis[2]) > UPRIGHT and over and abs(place[2] - level) < IN_FLOOR * options.thickness:
-            found.append(Pin(hole.words, place[:2]))
+            found.append(Pin(hole.words, place[:2], min(hole.size)))
     if len(found) < 2:
         return found
     apart = np.linalg.norm([[a.place - b.place for b in found] for a in found], axis=2)

@@ -59,6 +59,7 @@ DECK = """# Draws {part} and releases it; tools by {command}
   control = punch
   trial = 1.0
   move = punch 0 0 -${{depth}}
+  keep = on
 
 *PHASE springback
   unload = on
@@ -94,6 +95,7 @@ PIN = """# Locating pin in the hole {words}, with which the blank has to be pier
 *BOUNDARY pin_{number}
   set = pin_{number}
   fix = {fixed}
+  pin = {diameter:.4g}
 
 """
 GRAVITY = """# The blank is laid on the die by its weight.
@@ -196,7 +198,8 @@ def pinned(pins: Sequence[Pin]) -> str:
     if len(pins) > 1:
         apart = np.abs(pins[1].place - pins[0].place)
         fixed.append("y" if apart[0] > apart[1] else "x")
-    return "".join(PIN.format(words=pin.words, number=number, place=pair(pin.place), fixed=axes)
+    return "".join(PIN.format(words=pin.words, number=number, place=pair(pin.place), fixed=axes,
+                              diameter=pin.diameter)
                    for number, (pin, axes) in enumerate(zip(pins, fixed), 1))
 
 

@@ -165,6 +165,10 @@ def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
         others["die"] = face.surface.select(~floor), -top
         others["pad"] = part, -float(report.extent(part.net)[1][2])
         result.lines.append(("pad", "under the floor, as the part is formed on one side of it only"))
+    elif (free := free_stroke(face)) > options.thickness:
+        result.lines.append(("floor", f"not held: the rims of its walls are at two heights, so that one wall is formed "
+                             f"alone over {free:.3g} mm of the stroke, and may draw the sheet along the punch by up to "
+                             "that; compare the middle of the sheet after the draw, and give the blank that margin"))
     if not pad or any(reach.own for reach in face.reaches):
         holder = holder_of(gmsh, face, curves, options)
         closing = float(over - report.extent(holder.net)[0][2])
@@ -216,6 +220,13 @@ def one_sided(face: Face, pulled: list[Pull]) -> bool:
     """Tell whether walls or flanges pull the sheet to one side."""
     total = sum(np.linalg.norm(np.diff(reach.rim.points, axis=0), axis=1).sum() for reach in face.reaches)
     return bool(np.linalg.norm(sum(pull.along for pull in pulled)) > ONE_SIDED * total)
+
+
+def free_stroke(face: Face) -> float:
+    """Return the difference of the mean heights of the open rims of the die, mm: the stroke over which the wall of the
+    highest one is formed alone; 0 with closed rims, around which the sheet is held."""
+    heights = [float(reach.rim.points[:, 2].mean()) for reach in face.reaches if not reach.rim.closed]
+    return max(heights) - min(heights) if len(heights) == len(face.reaches) else 0.0
 
 
 def with_walls(part: own_flange.Trimmed, face: Face, options: argparse.Namespace

@@ -10,12 +10,12 @@ from dd3.tools import set_material
 from dd3.tools.moved import rotation
 
 DECK, CURVES, PROCESS = "trim.dat", "trim.txt", "part.toml"
-TEXT = """# Cuts the sheet of draw.dat along the rims and holes of {part}, and releases it.
+TEXT = """# Cuts the sheet of draw.dat along the rims and holes of {part}, held in its drawn shape, and releases it.
 *TITLE
   {part}, trimmed
 
 *PARAMETER
-  from = draw.out
+  from = draw.out/draw  # end of the draw, before the springback
 
 {material}
 
@@ -30,7 +30,7 @@ TEXT = """# Cuts the sheet of draw.dat along the rims and holes of {part}, and r
 *PHASE springback
   unload = on
 """
-OPERATIONS = """# {part}, drawn, released, trimmed and released again:
+OPERATIONS = """# {part}, drawn and released, and trimmed in its drawn shape and released:
 #   dd3 process {file} --report
 title = "{part}"
 
