@@ -152,25 +152,27 @@ def closed_solid(gmsh: Any, reading: Reading, text: str, whole: Side, both: list
     walls = [{tag for edge in opening.edges for tag in shape.edges[edge].faces} & rims for opening in openings]
     fixed = set().union(*(outer for _, outer in both), rims - set().union(*walls))
     hard = {i for i, opening in enumerate(openings) if opening.notch}
+    side = whole
     for _ in range(2):
-        side = whole
         side.fixed = fixed
-        if hard:
-            if any(openings[i].formed or openings[i].size > LARGE * shape.size for i in hard):
-                return None
-            solid, vertices = without(gmsh, shape, text, set().union(*(walls[i] for i in hard)))
-            if not solid:
-                return None
-            side = side_of(gmsh, shape, solid, set(shape.tags), fixed, (sheet.sides, vertices))
-            if any(walls[i] & set(side.numbers) for i in hard):
-                return None
         easy = [i for i in range(len(openings)) if i not in hard]
         side.remove(set().union(*(walls[i] for i in easy)))
         left = side.filled([openings[i] for i in easy])
         if not left:
-            return None if side.loops(set(shape.tags)) else side
+            break
         hard |= {i for i in easy if any(openings[i] is one for one in left)}
-    return None
+        side = side_of(gmsh, shape, text, set(shape.tags), fixed)
+    if left or any(openings[i].formed or openings[i].size > LARGE * shape.size for i in hard):
+        return None
+    if hard:  # OpenCASCADE is the faster the fewer openings the solid has
+        inside = set().union(*(walls[i] for i in hard))
+        solid, known = without(gmsh, side, inside)
+        if not solid:
+            return None
+        side = side_of(gmsh, shape, solid, set(shape.tags), fixed, (sheet.sides, known))
+        if inside & set(side.numbers):
+            return None
+    return None if side.loops(set(shape.tags)) else side
 
 
 def read_text(gmsh: Any, text: str) -> None:
@@ -191,36 +193,46 @@ def written_by(gmsh: Any) -> str:
         return path.read_text(encoding="utf-8")
 
 
-Changed = tuple[tuple[list[int], list[int]], dict[int, np.ndarray]]
+@dataclass
+class Known:
+    """What is known of a face: its area, mm2, its centroid, and its vertices (n, 3)."""
+
+    area: float
+    centre: np.ndarray
+    vertices: np.ndarray
 
 
-def side_of(gmsh: Any, shape: Shape, text: str, faces: set[int], fixed: set[int], changed: Changed | None = None
-           ) -> Side:
-    """Return faces of a part in a BREP file, which the session reads. With both sides of the part and the vertices of
-    its faces as it was read, faces that were changed since get numbers by these."""
+def side_of(gmsh: Any, shape: Shape, text: str, faces: set[int], fixed: set[int],
+            changed: tuple[tuple[list[int], list[int]], dict[int, Known]] | None = None) -> Side:
+    """Return faces of a part in a BREP file, which the session reads. With both sides of the part and its faces before
+    a change, those that were changed get numbers by their vertices."""
     read_text(gmsh, text)
     topology = Topology.of(text)
     tags = [tag for _, tag in gmsh.model.getEntities(2)]
-    number = numbers_of(gmsh, tags, shape)
+    known = changed[1] if changed else {tag: Known(shape.areas[tag], shape.centres[tag], np.zeros((0, 3)))
+                                        for tag in shape.tags}
+    number = numbers_of(gmsh, tags, known, SAME * shape.size)
     if changed:
+        vertices = {tag: face.vertices for tag, face in known.items()}
         for tag in [tag for tag in tags if tag not in number]:
-            number[tag] = number_by_vertices(corners(gmsh, tag), *changed, set(number.values()), SAME * shape.size)
+            number[tag] = number_by_vertices(corners(gmsh, tag), changed[0], vertices, set(number.values()),
+                                             SAME * shape.size)
     edges = dict(zip((part.record for part in topology.found("Ed")), (tag for _, tag in gmsh.model.getEntities(1))))
     chosen = [(part, number[tag]) for part, tag in zip(topology.found("Fa"), tags) if number.get(tag) in faces]
     return Side(gmsh, topology, [part for part, _ in chosen], [one for _, one in chosen], fixed, edges,
                 SAME * shape.size)
 
 
-def numbers_of(gmsh: Any, tags: list[int], shape: Shape) -> dict[int, int]:
-    """Return the numbers in the part of the faces that are as they were, by area and centre."""
-    old = shape.tags
-    away, at = cKDTree([shape.centres[tag] for tag in old]).query(
+def numbers_of(gmsh: Any, tags: list[int], known: dict[int, Known], near: float) -> dict[int, int]:
+    """Return the numbers of the faces that are as they were, by area and centre."""
+    old = list(known)
+    away, at = cKDTree([known[tag].centre for tag in old]).query(
         [gmsh.model.occ.getCenterOfMass(2, tag) for tag in tags], k=min(4, len(old)))
     found = {}
     for tag, distances, places in zip(tags, np.reshape(away, (len(tags), -1)), np.reshape(at, (len(tags), -1))):
         area = gmsh.model.occ.getMass(2, tag)
         same = [old[k] for k, distance in zip(places, distances)
-                if distance <= SAME * shape.size and abs(shape.areas[old[k]] - area) <= EQUAL * area]
+                if distance <= near and abs(known[old[k]].area - area) <= EQUAL * area]
         if same:
             found[tag] = same[0]
     return found
@@ -246,12 +258,13 @@ def number_by_vertices(points: np.ndarray, sides: tuple[list[int], list[int]], v
     return max((tag for tag in side if tag not in used), key=lambda tag: common([tag]).sum(), default=0)
 
 
-def without(gmsh: Any, shape: Shape, text: str, walls: set[int]) -> tuple[str, dict[int, np.ndarray]]:
-    """Return the text of a part without the openings that have walls, an empty one if OpenCASCADE does not take them
-    out; and the vertices of the faces of the part."""
+def without(gmsh: Any, side: Side, walls: set[int]) -> tuple[str, dict[int, Known]]:
+    """Return the text of a solid without the openings that have walls, an empty one if OpenCASCADE does not take them
+    out; and what is known of its faces before."""
+    text, number, _ = side.result({})
     read_text(gmsh, text)
-    number = numbers_of(gmsh, [tag for _, tag in gmsh.model.getEntities(2)], shape)
-    vertices = {one: corners(gmsh, tag) for tag, one in number.items()}
+    known = {one: Known(gmsh.model.occ.getMass(2, tag), np.array(gmsh.model.occ.getCenterOfMass(2, tag)),
+                        corners(gmsh, tag)) for tag, one in number.items()}
     chosen = [tag for tag, one in number.items() if one in walls]
     low, high = box_of_edges(gmsh)
     solids = {int(solid) for tag in chosen for solid in gmsh.model.getAdjacencies(2, tag)[0]}
@@ -260,10 +273,10 @@ def without(gmsh: Any, shape: Shape, text: str, walls: set[int]) -> tuple[str, d
             gmsh.model.occ.defeature(sorted(solids), chosen)
             gmsh.model.occ.synchronize()
     except Exception:  # Gmsh raises nothing more specific
-        return "", vertices
+        return "", known
     lower, higher = box_of_edges(gmsh)
     beyond = max((low - lower).max(), (higher - high).max())
-    return written_by(gmsh) if beyond <= BEYOND * shape.size else "", vertices
+    return written_by(gmsh) if beyond <= BEYOND * side.near / SAME else "", known
 
 
 def box_of_edges(gmsh: Any) -> tuple[np.ndarray, np.ndarray]:

@@ -95,7 +95,7 @@ def hole_of(shape: Shape, loop: Loop) -> Hole:
     axes = np.linalg.eigh(inplane.T @ inplane)[1].T[1:]
     size = sorted((float(np.ptp(inplane @ axis)) for axis in axes), reverse=True)
     beside = shape.of(loop.faces)
-    near = beside[np.isin(shape.triangles[beside], loop.nodes).any(axis=1)]
+    near = beside[shape.marked(loop.nodes)[shape.triangles[beside]].any(axis=1)]
     level = np.abs(shape.normal[near] @ normal)
     if np.average(level, weights=shape.area[near]) < np.sin(np.radians(LANCED)):
         outwards = np.sign(((shape.place[near] - middle) * shape.normal[near]).sum(axis=1))

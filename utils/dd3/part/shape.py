@@ -111,6 +111,12 @@ class Shape:
         """Return the triangles of faces."""
         return np.concatenate([np.zeros(0, int), *(self.cells[tag] for tag in faces)])
 
+    def marked(self, nodes: np.ndarray) -> np.ndarray:
+        """Return which of all nodes are the ones given (n,)."""
+        found = np.zeros(len(self.nodes), bool)
+        found[nodes] = True
+        return found
+
     def components(self, faces: Iterable[int]) -> list[set[int]]:
         """Return the sets of faces that are connected by edges, the largest area first."""
         left, found = set(faces), []
