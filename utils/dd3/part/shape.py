@@ -7,6 +7,7 @@ the picture and for the courses of edges. Tools are not made of them.
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -55,6 +56,7 @@ class Shape:
     body: np.ndarray  # of the triangles (m,)
     closed: bool
     failed: list[int] = field(default_factory=list)
+    rims: dict[tuple[int, ...], Any] = field(default_factory=dict)  # of sets of faces, once they were asked for
 
     @cached_property
     def tags(self) -> list[int]:
