@@ -280,6 +280,13 @@ def folded_cover():
     occ.cut(body, [*corners, (3, occ.addBox(-5, 25, 9, 10, 10, 10))])
 
 
+def relieved_angle():
+    """Make an angle whose web goes on beside the bend, behind a relief."""
+    body = strip([(0, 30), (0, 0), (40, 0)], 2, 3, 60)
+    body = occ.cut(body, [(3, occ.addBox(10, -10, -1, 30, 16, 40))])[0]
+    occ.fuse(body, [(3, occ.addBox(14, -15, 0, 16, 25, 2))])
+
+
 def slotted_cover():
     """Make a shallow cover with 165 slots."""
     body = pocket((110, 80), 12, 0.8, 10, 4)
@@ -491,6 +498,7 @@ PARTS = {
     "notched_lid": Expected(notched_lid, thickness=0.6, notches=2, symmetry=1, radius=1.5),
     "notched_flange": Expected(notched_flange, thickness=0.6, notches=1, symmetry=1, radius=1.5),
     "folded_cover": Expected(folded_cover, bent=True, notches=1, symmetry=1, radius=2.0),
+    "relieved_angle": Expected(relieved_angle, thickness=2.0, bent=True, notches=1, radius=3.0, toward=(0, 1, 1)),
     "slotted_cover": Expected(slotted_cover, thickness=0.8, holes=165, symmetry=2, radius=3.2),
     "flanged_cover": Expected(flanged_cover, thickness=0.8, holes=5, symmetry=2, radius=3.0),
     "louvred_cover": Expected(louvred_cover, holes=3, symmetry=1, radius=0.0),

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial import cKDTree
 
+from dd3.part.bends import ALONG, find_bends
 from dd3.part.filling import SAME, Side
 from dd3.part.openings import Opening, curves_of, middle, openings_of
 from dd3.part.profile import Profile, edges_of, extrude, faces_of, profile_of
@@ -77,19 +78,22 @@ def closed_part(gmsh: Any, reading: Reading, faces: list[int]) -> Closed | None:
     with silence():
         whole = side_of(gmsh, shape, written_by(gmsh), set(shape.tags), outer)
         text, _, _ = whole.result({})  # without other parts of the file
-        side = closed_solid(gmsh, reading, text, whole, both)
-        if side is None:
-            side = side_of(gmsh, shape, text, set(faces), outer)
-            left = side.filled(openings)
+        solid, left_of_solid = closed_solid(gmsh, reading, text, whole, both)
+        left = [one for one in openings if any(set(one.edges) == set(other.edges) for other in left_of_solid)]
+        side = solid
+        if solid is None or left:
+            alone = side_of(gmsh, shape, text, set(faces), outer)
+            left_alone = alone.filled(openings)
+            if solid is None or len(left_alone) < len(left):
+                side, left = alone, left_alone
     large = [opening for opening in left if opening.size > LARGE * shape.size]
     for opening in left:
         if any(opening is one for one in large):
             continue
-        reading.faults.append(Fault(f"{opening.said} is not filled, as faces end there that do not go on behind it: "
-                                    "close it in the CAD program, or choose faces by --faces", opening.faces,
+        reading.faults.append(Fault(f"{opening.said} is not filled, {why(shape, faces, opening)}", opening.faces,
                                     opening.edges))
     rims = len(side.loops(set(faces)))
-    if len(left) == len(large) and rims != 1 + len(large):
+    if len(left) == len(large) and rims != 1 + sum(not opening.notch for opening in large):
         reading.faults.append(Fault(f"{rims} rims are left after {len(openings)} openings were filled: close them in "
                                     "the CAD program, or choose faces by --faces"))
     found = [one.words for one in openings if not any(one is other for other in left)]
@@ -101,6 +105,19 @@ def closed_part(gmsh: Any, reading: Reading, faces: list[int]) -> Closed | None:
                                     "close the openings in the CAD program, or choose faces by --faces"))
     return Closed(text, numbers, [tag for tag, number in numbers.items() if number in set(faces)], edges, openings,
                   curves, notes)
+
+
+def why(shape: Shape, faces: list[int], opening: Opening) -> str:
+    """Return why an opening of a side is not filled, and what to do."""
+    beside = [bend for bend in find_bends(shape, faces) if set(bend.faces) & set(opening.faces)]
+    if any(abs(one.axis @ beside[0].axis) < ALONG for one in beside):
+        return ("as walls that are bent along lines in different directions end there, with an open corner: the part is "
+                "folded from a blank that is cut there before, not drawn. Close the corner in the CAD program to draw "
+                "it and trim it, or bend the walls one after the other on a press brake")
+    if beside and opening.notch:
+        return ("as the sheet goes on beside a bend there: it has to be cut before it is bent, a cut after the stroke "
+                "cannot make it. End the sheet at the bend in the CAD program, or bend the cut blank on a press brake")
+    return "as faces end there that do not go on behind it: close it in the CAD program, or choose faces by --faces"
 
 
 def extruded(gmsh: Any, reading: Reading, profile: Profile, faces: list[int], openings: list[Opening],
@@ -140,13 +157,13 @@ def off_faces(gmsh: Any, text: str, edges: list[int]) -> float:
 
 
 def closed_solid(gmsh: Any, reading: Reading, text: str, whole: Side, both: list[tuple[list[Opening], set[int]]]
-                ) -> Side | None:
-    """Return the faces of the solid of a sheet whose openings were filled on both sides, None if that cannot be:
-    `whole` are its faces, which are changed, `text` is the BREP file of them as they were, and `both` has the openings
-    of each side and the faces at its outer rim."""
+                ) -> tuple[Side | None, list[Opening]]:
+    """Return the faces of the solid of a sheet whose openings were filled on both sides, None if that cannot be, and
+    those that are left: `whole` are its faces, which are changed, `text` is the BREP file of them as they were, and
+    `both` has the openings of each side and the faces at its outer rim."""
     shape, sheet = reading.shape, reading.sheet
     if not reading.solid or not all(sheet.sides):
-        return None
+        return None, []
     openings = [opening for one, _ in both for opening in one]
     rims = set(sheet.rims)
     walls = [{tag for edge in opening.edges for tag in shape.edges[edge].faces} & rims for opening in openings]
@@ -162,17 +179,22 @@ def closed_solid(gmsh: Any, reading: Reading, text: str, whole: Side, both: list
             break
         hard |= {i for i in easy if any(openings[i] is one for one in left)}
         side = side_of(gmsh, shape, text, set(shape.tags), fixed)
-    if left or any(openings[i].formed or openings[i].size > LARGE * shape.size for i in hard):
-        return None
-    if hard:  # OpenCASCADE is the faster the fewer openings the solid has
-        inside = set().union(*(walls[i] for i in hard))
-        solid, known = without(gmsh, side, inside)
-        if not solid:
-            return None
-        side = side_of(gmsh, shape, solid, set(shape.tags), fixed, (sheet.sides, known))
-        if inside & set(side.numbers):
-            return None
-    return None if side.loops(set(shape.tags)) else side
+    if left:
+        return None, []
+    # OpenCASCADE is the faster the fewer openings the solid has. What it does not take out is left.
+    tried = [i for i in hard if not openings[i].formed and openings[i].size <= LARGE * shape.size]
+    taken = set[int]()
+    at_once = [set().union(*(walls[i] for i in tried))] if tried else []
+    each = [set(one) for one in dict.fromkeys(tuple(sorted(walls[i])) for i in tried)]
+    for some in (at_once, each if len(each) > 1 else []):
+        for inside in [one for one in some if not one <= taken]:
+            new, known = without(gmsh, side, inside)
+            if new:
+                other = side_of(gmsh, shape, new, set(shape.tags), fixed, (sheet.sides, known))
+                if not inside & set(other.numbers) and not other.loops(set(shape.tags)):
+                    side, taken = other, taken | inside
+    left = [openings[i] for i in hard if not walls[i] <= taken]
+    return (None, []) if side.loops(set(shape.tags)) else (side, left)
 
 
 def read_text(gmsh: Any, text: str) -> None:
