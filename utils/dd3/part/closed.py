@@ -111,9 +111,9 @@ def why(shape: Shape, faces: list[int], opening: Opening) -> str:
     """Return why an opening of a side is not filled, and what to do."""
     beside = [bend for bend in find_bends(shape, faces) if set(bend.faces) & set(opening.faces)]
     if any(abs(one.axis @ beside[0].axis) < ALONG for one in beside):
-        return ("as walls that are bent along lines in different directions end there, with an open corner: the part is "
-                "folded from a blank that is cut there before, not drawn. Close the corner in the CAD program to draw "
-                "it and trim it, or bend the walls one after the other on a press brake")
+        return ("as walls that are bent along lines in different directions end there, with an open corner: the part "
+                "is folded from a blank that is cut there before, not drawn. Close the corner in the CAD program to "
+                "draw and trim it, or bend the walls one after the other on a press brake")
     if beside and opening.notch:
         return ("as the sheet goes on beside a bend there: it has to be cut before it is bent, a cut after the stroke "
                 "cannot make it. End the sheet at the bend in the CAD program, or bend the cut blank on a press brake")

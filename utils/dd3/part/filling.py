@@ -232,8 +232,8 @@ class Side:
             low, _ = self.topology.bounds(one[0])
             return {one[0]: self.between(one[0], low, low + 2 * np.pi, [self.topology.ends(one[0])[0]] * 2)}
         apart = np.linalg.norm(self.end(*one) - self.end(*other))
-        reach = {edge: self.beyond_end(edge, vertex, 2 * max(apart, np.linalg.norm(self.end(*one) - self.end(*seams[0]))))
-                 for edge, vertex in (*seams, one)}
+        length = 2 * max(apart, np.linalg.norm(self.end(*one) - self.end(*seams[0])))
+        reach = {edge: self.beyond_end(edge, vertex, length) for edge, vertex in (*seams, one)}
         place = self.crossing(seams[0][0], one[0], reach)
         if place is None:
             return {}
