@@ -429,7 +429,7 @@ def mesh_within(gmsh: Any, path: Path, model: Model, tolerance: float, longest: 
         failed = mesh_once(gmsh, path, model, division)
         progress((rounds + 1) / MOST_ROUNDS)
         if not failed:
-            kink, bent = faults(model, rounds)
+            kink, bent = faults(gmsh, model, rounds)
             score = (len(bent), (model.distance > tolerance).sum(), (kink > KINK).any(axis=1).sum())
             if best is None or score < best[0]:
                 best = score, model.nodes, model.uv, model.labels, model.face, model.distance
@@ -463,12 +463,26 @@ def mesh_once(gmsh: Any, path: Path, model: Model, division: Division) -> list[A
     return failed
 
 
-def faults(model: Model, rounds: int) -> tuple[np.ndarray, set[int]]:
+def faults(gmsh: Any, model: Model, rounds: int) -> tuple[np.ndarray, set[int]]:
     """Return the largest kinks inside each face (face, 2), degrees, 0 after the first rounds; and the faces with
-    folds."""
+    folds, within a patch or between patches."""
     net = from_nodes(model.nodes)
     kink = worst_kinks(model, net) if rounds < KINK_ROUNDS else np.zeros((len(model.tags), 2))
-    return kink, set(model.face[folded(net)].tolist())
+    return kink, set(model.face[folded(net)].tolist()) | overlapping(gmsh, model)
+
+
+def overlapping(gmsh: Any, model: Model) -> set[int]:
+    """Return the faces whose patches lie upon each other: some look to the other side of the CAD than most."""
+    found = set()
+    side = middle_normals(model)
+    for index, tag in enumerate(model.tags):
+        chosen = np.flatnonzero(model.face == index)
+        uv = model.uv[chosen, 1, 1]
+        chosen, uv = chosen[~np.isnan(uv).any(axis=1)], uv[~np.isnan(uv).any(axis=1)]
+        cosine = (np.reshape(gmsh.model.getNormal(tag, uv.ravel()), (-1, 3)) * side[chosen]).sum(axis=1)
+        if (cosine > 0).any() and (cosine < 0).any():
+            found.add(index)
+    return found
 
 
 def read_file(gmsh: Any, path: Path, model: Model, options: argparse.Namespace) -> list[int]:

@@ -82,6 +82,10 @@ def both_sides(gmsh: Any, options: argparse.Namespace, progress: Any
         least *= JUST
     model = cad.read_cad(gmsh, options.source, fine, progress)
     refuse_left_out(model, options)
+    if upon := cad.overlapping(gmsh, model):
+        raise Problem(f"{options.source}: Gmsh makes no mesh of {report.named(model, np.array(sorted(upon)))} whose "
+                      "patches do not lie upon each other: divide or mend them in the CAD program, or choose faces by "
+                      "--faces")
     surface = cad.surface_of(model)
     matrix = rotation(options.rotate)
     up = matrix.T @ -DOWN
