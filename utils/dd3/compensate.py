@@ -33,7 +33,6 @@ from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator, RBFIn
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
-from scipy.special import comb
 
 from dd3.bound import Bound, rings
 from dd3.errors import Problem
@@ -54,12 +53,11 @@ from dd3.programs import find_program, made_folder
 from dd3.run import read_frame, read_job
 from dd3.sheet import AXES, Sheet
 from dd3.springback import best_fit, images, steps_with_tools
-from dd3.tables import read_text
 from dd3.tools.cad import silence
 from dd3.tools.facet_files import Facets
 from dd3.tools.nagata import estimate_normals, unfolded_patches
 from dd3.tools.picture import quads as flat_quads
-from dd3.tools.surface import Surface, from_nodes, read_lines, write
+from dd3.tools.surface import Patches, Surface, from_nodes, points_on, read_patches, write
 
 MOST_POINTS = 2000  # of the smooth function
 ROUND = 4.0  # radius at the tips of the multiquadrics, over the distance of the places
@@ -212,25 +210,12 @@ def at_places(places: np.ndarray, values: np.ndarray, wanted: np.ndarray) -> np.
     return np.asarray(found)
 
 
-def read_surface(path: Path) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return points and weights of the patches of a .bez file."""
-    lines = [line.partition("#")[0].split() for line in read_text(path).splitlines()]
-    return read_lines([line for line in lines if line])
-
-
 def nodes_of(patch: tuple[np.ndarray, np.ndarray], in_v: int, in_u: int) -> np.ndarray:
     """Return the points (v, u, 3) of a patch on a regular grid of its parameters, 2 n + 1 points along each."""
-    points, weights = patch
-    factors = []
-    for degree, count in zip((points.shape[0] - 1, points.shape[1] - 1), (in_v, in_u)):
-        t, k = np.linspace(0, 1, 2 * count + 1), np.arange(degree + 1)
-        factors.append(comb(degree, k) * t[:, None]**k * (1 - t[:, None])**(degree - k))
-    above = np.einsum("ai,bj,ijc->abc", *factors, points * weights[..., None])
-    below = np.einsum("ai,bj,ij->ab", *factors, weights)
-    return np.asarray(above / below[..., None])
+    return points_on(*patch, np.linspace(0, 1, 2 * in_v + 1), np.linspace(0, 1, 2 * in_u + 1))
 
 
-def divisions(patches: list[tuple[np.ndarray, np.ndarray]], size: float) -> np.ndarray:
+def divisions(patches: Patches, size: float) -> np.ndarray:
     """Return the numbers of parts (n, 2) of the patches along v and u that make them no longer than `size`: the same
     for opposite sides and for patches that share a side."""
     grids = [nodes_of(patch, 4, 4) for patch in patches]
@@ -252,7 +237,7 @@ def divisions(patches: list[tuple[np.ndarray, np.ndarray]], size: float) -> np.n
 def moved_surface(path: Path, displacement: Any, size: float, place: np.ndarray) -> Surface:
     """Return a tool's surface, divided, with its points moved. `place` is its displacement where the displacement of
     its points is given."""
-    patches = read_surface(path)
+    patches = read_patches(path)
     blocks, face = [], []
     for number, (patch, (in_v, in_u)) in enumerate(zip(patches, divisions(patches, size))):
         nodes = nodes_of(patch, in_v, in_u)

@@ -36,8 +36,7 @@ from dd3.programs import add_program, command, find_program, launch, setting
 from dd3.progress import each
 from dd3.run import file_of, read_job
 from dd3.sheet import AXES
-from dd3.tools.blocks import lines_of
-from dd3.tools.surface import read_lines
+from dd3.tools.surface import Patches, points_on, read_patches
 
 VIEWS = {  # direction from the sheet to the camera, and the upward direction
     "iso": ((-0.9, -1.6, 0.9), (0, 0, 1)),
@@ -53,8 +52,6 @@ POINTS = 200000  # of a tool, about; at most 25 x 25 of a patch
 MANY_PATCHES = 300  # number above which only the outer edges of a tool are drawn
 TOOL_COLOURS = ["#8d99a6", "#a69b8d", "#93a68d", "#a08da6"]
 
-
-Patches = list[tuple[np.ndarray, np.ndarray]]  # points (v, u, 3) and weights (v, u)
 Box = tuple[np.ndarray, np.ndarray]
 
 
@@ -98,19 +95,6 @@ class Run(Fields):
         return {name: Placement(*of_tool) for name, *of_tool in zip(names, axes, displacements, strict=True)}
 
 
-def read_patches(path: Path) -> Patches:
-    """Return the patches of a .bez file."""
-    try:
-        return read_lines([line.split() for line in lines_of(path)])
-    except (ValueError, IndexError):
-        raise Problem(f"{path}: not a file of Bézier patches") from None
-
-
-def bernstein(degree: int, t: np.ndarray) -> np.ndarray:
-    """Return the Bernstein polynomials of a degree at t."""
-    return np.array([math.comb(degree, i) * t**i * (1 - t) ** (degree - i) for i in range(degree + 1)])
-
-
 def tool_surface(patches: Patches, placement: Placement, count: int = POINTS) -> tuple[pv.PolyData, pv.PolyData]:
     """Return the surface of a tool at its place, of about `count` points, and the edges of its patches; of many patches
     its outer edges."""
@@ -118,18 +102,15 @@ def tool_surface(patches: Patches, placement: Placement, count: int = POINTS) ->
     points, faces, lines, first = [], [], [], 0
     for shape in {weights.shape for _, weights in patches}:
         alike = [patch for patch in patches if patch[1].shape == shape]
-        weights = np.array([weights for _, weights in alike])
-        counts = [1 if size == 2 else finest for size in shape]
-        bv, bu = (bernstein(size - 1, np.linspace(0, 1, count + 1)) for size, count in zip(shape, counts))
-        total = np.einsum("pji,jb,ia->pba", weights, bv, bu)
-        xyz = np.einsum("pji,pjid,jb,ia->pbad", weights, np.array([p for p, _ in alike]), bv, bu) / total[..., None]
+        places = [np.linspace(0, 1, 2 if size == 2 else finest + 1) for size in shape]
+        xyz = points_on(np.array([p for p, _ in alike]), np.array([weights for _, weights in alike]), *places)
         points.append(placement.of(xyz.reshape(-1, 3)))
-        number = first + np.arange(total.size).reshape(total.shape)
+        number = first + np.arange(xyz[..., 0].size).reshape(xyz.shape[:3])
         corners = number[:, :-1, :-1], number[:, :-1, 1:], number[:, 1:, 1:], number[:, 1:, :-1]
         faces.append(np.stack(corners, axis=-1).reshape(-1, 4))
         for side in (number[:, 0], number[:, -1], number[:, :, 0], number[:, :, -1]):
             lines.append(np.stack((side[:, :-1], side[:, 1:]), axis=-1).reshape(-1, 2))
-        first += total.size
+        first += number.size
     xyz, cells, edges = map(np.concatenate, (points, faces, lines))
     skin = pv.PolyData(xyz, np.insert(cells, 0, 4, axis=1))
     if len(patches) <= MANY_PATCHES:
