@@ -47,8 +47,8 @@ class Rows(dict[str, Row]):
     """Rows of the table of results by their cases."""
 
     def __missing__(self, case: str) -> Row:
-        raise Problem(f"results.csv: the case {case} is missing; `python3 -m bending_study run` runs the cases that are not "
-                      "done")
+        raise Problem(f"results.csv: the case {case} is missing; `python3 -m bending_study run` runs the cases that "
+                      "are not done")
 
 
 class Results:
