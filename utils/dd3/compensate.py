@@ -35,12 +35,11 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from dd3.bound import Bound, rings
-from dd3.errors import Problem
+from dd3.errors import LOG, Problem, Stopped
 from dd3.gmsh_session import session
 from dd3.process import (
     Operation,
     Process,
-    Stopped,
     check_deck,
     process_parser,
     read_process,
@@ -365,9 +364,9 @@ def compensate(program: Path, process: Process, parameter: str, loops: int, tole
         if not compared.all():
             goal[~compared] = normal_feet(place[~compared], around)[0]
         found.append(Loop(tools, float(deviation.max()), float(np.sqrt((deviation**2).mean()))))
-        print(f"loop {len(found) - 1}: largest deviation {found[-1].largest:.4g} mm, root mean square "
+        LOG.info(f"loop {len(found) - 1}: largest deviation {found[-1].largest:.4g} mm, root mean square "
               f"{found[-1].rms:.4g} mm" + f", without {sum(~compared)} nodes beyond the border of the wanted shape"
-              * bool(sum(~compared)), flush=True)
+              * bool(sum(~compared)))
         if found[-1].largest <= tolerance or len(found) > loops:
             break
         folder = made_folder(work / f"loop_{len(found)}")
@@ -380,7 +379,7 @@ def compensate(program: Path, process: Process, parameter: str, loops: int, tole
             stopped = run_with(program, process, operations, {parameter: str(folder.resolve())}, threads)
             if not isinstance(stopped, Stopped):
                 break
-            print(f"loop {len(found)} with {part:g} of the correction stopped: {stopped}", flush=True)
+            LOG.info(f"loop {len(found)} with {part:g} of the correction stopped: {stopped}")
         if stopped:
             break
     best = min(found, key=lambda loop: loop.largest)
@@ -392,7 +391,7 @@ def compensate(program: Path, process: Process, parameter: str, loops: int, tole
         write_step(work / f"{Path(name).stem}.step", moved_surface(path, np.zeros_like, np.inf, np.zeros(3)))
     deviations = [(loop.largest, loop.rms) for loop in found]
     write_deviations(work / "deviations.csv", "loop,largest,rms", deviations, 0)
-    print(f"tools of loop {found.index(best)} in {work}")
+    LOG.info(f"tools of loop {found.index(best)} in {work}")
     if stopped:
         raise Problem(f"loop {len(found)} stopped: {stopped}")
     return deviations
