@@ -236,17 +236,7 @@ class Point:
 
 
 def material(source: str | Path | Mapping[str, Any] | None = None, *, name: str | None = None, **keys: Any) -> Material:
-    """Return a material for its curves, r-values, yield loci and forming limit curve.
-
-    source: a file with *MATERIAL, which may be a whole input file; the name of a material of the library, such as
-    "dc06"; a text with *MATERIAL; or the keys of *MATERIAL. These may also be given as arguments, `yield_` for yield:
-
-        dd3.material("dp600")
-        dd3.material(young=2.1e5, poisson=0.3, yield_="hill48 r0=1.8 r45=1.5 r90=2.2",
-                     hardening="swift K=530 e0=0.004 n=0.2")
-
-    name: that of the block, where a file has several. Raises Problem with the messages of the program on wrong values.
-    """
+    """Return a material: the function of the package, dd3.material."""
     if isinstance(source, Mapping) or keys:
         lines = {**(source if isinstance(source, Mapping) else {}), **keys}
         text = [f"*MATERIAL {name or 'material'}"]
