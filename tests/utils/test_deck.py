@@ -58,6 +58,7 @@ def test_values(tmp_path):
     job["PHASE", "draw"].set_all("move", ["punch 0 0 -1"])
     job["PHASE", "free"]["unload"] = False
     job["TITLE"].text = "shorter"
+    assert job.blocks.index(job["TOOL"]) == 5
     job.add("MATERIAL", "steel", young=2.1e5, poisson=0.3)
     job.remove(job["TOOL"])
     job.add("TOOL", "die", patches="die.bez")

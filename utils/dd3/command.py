@@ -41,6 +41,7 @@ COMMANDS = {
         "combination": ("dd3.study.vary:run_combination", "run one of these combinations in the folder of the study"),
     }),
     "example": ("dd3.example", "copy an example, or list the examples"),
+    "completion": ("dd3.completion", "print a script that completes commands and options in a shell"),
     "info": ("dd3.info", "print what is installed: versions, program, examples, Python packages"),
 }
 USAGE = "dd3 plot force bending.out"

@@ -69,6 +69,11 @@ class Block(MutableMapping[str, str]):
         self.keyword, _, name = head.text()[1:].partition(" ")
         self.name = name.strip()
 
+    def __eq__(self, other: object) -> bool:  # blocks of the same values are not the same block
+        return self is other
+
+    __hash__ = object.__hash__
+
     def __repr__(self) -> str:
         return f"<block *{self.keyword} {self.name} of {self.deck.where(self.head)}>".replace(" >", ">")
 
