@@ -42,3 +42,11 @@ def test_help(words):
     words = [word for word in words if word != ANY]
     assert f"\n    {' '.join(('dd3', *words))} " in said
     assert call("--version").startswith("dd3 ")
+
+
+def test_completion():
+    """Check that the script of the shell has the commands, and the options of each."""
+    said = call("completion", "bash")
+    assert '"plot force "*) words="--component --factor' in said and '"report "*)' in said
+    assert '"plot "*) words="force increments point sheet"' in said and "complete -o filenames -F _dd3 dd3" in said
+    assert call("completion", "zsh").startswith("#compdef dd3\n")

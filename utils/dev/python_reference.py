@@ -76,7 +76,8 @@ def signature(name: str, thing: Any) -> str:
     if len(line) <= WIDTH:
         return line
     inner, _, end = line.partition("(")[2].rpartition(") -> ")
-    return "\n".join(textwrap.wrap(inner, WIDTH - 4, initial_indent=f"{name}(", subsequent_indent="    ")) + f") -> {end}"
+    wrapped = textwrap.wrap(inner, WIDTH - 4, initial_indent=f"{name}(", subsequent_indent="    ")
+    return "\n".join(wrapped) + f") -> {end}"
 
 
 def text_of(thing: Any) -> str:
@@ -84,7 +85,8 @@ def text_of(thing: Any) -> str:
     lines, found = inspect.cleandoc(thing.__doc__ or "").splitlines(), []
     for line in lines:
         code = line.startswith("    ")
-        found.append(line if code else re.sub(r"([*_<>])", r"\\\1", line) if "`" not in line else line.replace("*", r"\*"))
+        marks = r"([*])" if "`" in line else r"([*_<>])"
+        found.append(line if code else re.sub(marks, r"\\\1", line))
     return "\n".join(found)
 
 
