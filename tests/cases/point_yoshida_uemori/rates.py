@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Print reference.csv: the rate equations of Yoshida and Uemori's law, integrated independently of the program.
 
-    rates.py 2000 >reference.csv
+    rates.py 2000 mises_cycles mises_sheared >reference.csv
+    rates.py 2000 hill_cycles hill_crossed >../point_yoshida_uemori_hill/reference.csv
 
 The number is that of the program's increments in each part of a path and determines the row numbers only; the values do
 not depend on it.
@@ -21,7 +22,8 @@ from scipy.optimize import brentq
 
 POISSON = 0.3
 SPCC = {"E": 2.06e5, "Y": 124, "B": 168, "C": 500, "m": 12, "b": 9, "Rsat": 190, "h": 0.5, "Ea": 2.06e5, "xi": 0}
-SLOW = {"E": 2.0e5, "Y": 337, "B": 620, "C": 100, "m": 34, "b": 202, "Rsat": 190, "h": 0.772, "Ea": 1.5e5, "xi": 60}
+SLOW = {"E": 2.0e5, "Y": 337, "B": 620, "C": 100, "m": 34, "b": 202, "Rsat": 190, "h": 0.772, "Ea": 2.0e5, "xi": 0}
+CHORD = SLOW | {"Ea": 1.5e5, "xi": 60}
 MISES, HILL = (0.5, 0.5, 0.5, 1.5), (0.284, 0.358, 0.642, 1.289)
 # Paths: which of 11 22 33 23 31 12 are strains, and those of 11 and 12 at the end of each part.
 CYCLES = ((1, 0, 0, 0, 0, 0), [(0.05, 0), (-0.03, 0), (0.08, 0)])
@@ -30,7 +32,7 @@ CROSSED = ((1, 0, 0, 0, 0, 1), [(0.05, 0), (0.05, 0.08)])
 POINTS = {
     "mises_cycles": (SPCC, MISES, CYCLES),
     "mises_sheared": (SLOW, MISES, SHEARED),
-    "hill_cycles": (SLOW, HILL, CYCLES),
+    "hill_cycles": (CHORD, HILL, CYCLES),
     "hill_crossed": (SPCC, HILL, CROSSED),
 }
 ROWS = 10
@@ -151,10 +153,11 @@ class Point:
 
 def main():
     """Print the table."""
-    increments = int(sys.argv[1]) if len(sys.argv) > 1 else 2000
+    increments = int(sys.argv[1])
     print("# Written by rates.py: the rate equations of the law, integrated independently.")
     print("point,increment,s11,s12,eqps,bounding_hardening")
-    for name, (law, form, (given, ends)) in POINTS.items():
+    for name in sys.argv[2:]:
+        law, form, (given, ends) = POINTS[name]
         point = Point(law, hill(*form))
         start, increment = (0.0, 0.0), 0
         for end in ends:
@@ -162,7 +165,7 @@ def main():
             change[0], change[5] = end[0] - start[0], SHEAR * (end[1] - start[1])
             for state in point.go(np.array(given, bool), change):
                 increment += increments // ROWS
-                print(f"{name},{increment},{state[0]:.5f},{state[5] / SHEAR:.5f},{state[6]:.8f},{state[26]:.5f}")
+                print(f"{name},{increment},{state[0]:.5f},{state[5] / SHEAR:.5f},{state[6]:.10f},{state[26]:.5f}")
             start = end
 
 
