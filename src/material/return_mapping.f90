@@ -51,8 +51,8 @@ module dd3_material_return_mapping
     integer :: iterations
     !> Norm of the residual; ratio of equivalent trial stress to flow stress.
     real(wp) :: norm, overstress
-    !> Elastic stiffness over that of the undeformed material.
-    real(wp) :: stiffness
+    !> Elastic stiffness over that of the undeformed material, and its inverse.
+    real(wp) :: stiffness, softness
     !> Trial stress and stress at the end, MPa.
     real(wp) :: trial(6), stress(6)
     !> Plastic increment.
@@ -81,6 +81,7 @@ contains
     real(wp) :: effective(6), value
 
     step%stiffness = stiffness_ratio(laws, start(1))
+    step%softness = 1/step%stiffness
     step%trial = stress + step%stiffness*elastic_stress(laws%elasticity, strain)
     effective = step%trial
     if (laws%kinematic) effective = effective - back_stress_of(laws, start)
@@ -187,7 +188,7 @@ contains
       call add_back_stresses(laws, start, increment, step%direction, step%back)
       step%stress = stress + step%back%value
     end if
-    step%residual = elastic_strain(laws%elasticity, step%stress - step%trial)/step%stiffness &
+    step%residual = step%softness*elastic_strain(laws%elasticity, step%stress - step%trial) &
         + increment*step%direction%gradient
     step%excess = step%direction%equivalent - step%flow%value
     step%norm = sqrt(dot_product(step%residual, step%residual)/strain_weight**2 &
@@ -276,11 +277,10 @@ contains
     !> A, c and r.
     real(wp), intent(out) :: matrix(6, 6), column(6), row(6)
 
-    real(wp) :: softness
     integer :: j
 
-    softness = 1/step%stiffness
-    matrix = softness*laws%elasticity%compliance + step%increment*step%direction%second
+    matrix = laws%elasticity%compliance + step%increment*step%direction%second
+    if (laws%softens) matrix = matrix + (step%softness - 1)*laws%elasticity%compliance
     column = step%direction%gradient
     row = step%direction%gradient
     if (laws%symmetric) return
@@ -288,9 +288,9 @@ contains
     if (.not. laws%kinematic) return
     do j = 1, 6
       matrix(:, j) = matrix(:, j) &
-          + softness*elastic_strain(laws%elasticity, step%back%gradient(:, j))
+          + step%softness*elastic_strain(laws%elasticity, step%back%gradient(:, j))
     end do
-    column = column + softness*elastic_strain(laws%elasticity, step%back%slope)
+    column = column + step%softness*elastic_strain(laws%elasticity, step%back%slope)
   end subroutine fill_matrix
 
   !> Invert a positive definite 6x6 matrix by Gauss-Jordan sweeps without pivoting. The unit vectors
