@@ -214,9 +214,10 @@ def chord(program, law, figure):
         ends = np.flatnonzero(np.isclose(stress, 0, atol=1e-6))[1:]
         modulus = stress[ends - 1] / (strain[ends - 1] - strain[ends]) / 1000
         style = {**style, "label": names[name]}
-        axes[0].plot(100 * strain, stress, **style)
+        last = slice(ends[-1] - 1, ends[-1] + 1)
+        axes[0].plot(1000 * (strain[last] - strain[ends[-1] - 1]), stress[last], **style)
         axes[1].plot(plastic[ends], modulus, **{**style, "marker": "o"})
-    axes[0].set(xlabel="logarithmic strain (%)", ylabel="true stress (MPa)", title="tension with unloadings")
+    axes[0].set(xlabel="strain recovered (0.001)", ylabel="true stress (MPa)", title="last unloading")
     axes[1].set(xlabel="equivalent plastic strain", ylabel="Young's modulus (GPa)", title="slope of the unloadings")
     for part in axes:
         legend(part)
