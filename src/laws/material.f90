@@ -77,7 +77,8 @@ contains
           " MPa at zero plastic strain", "young = "//to_text(spec%young), code="E149")
     else if (last > spec%young*(1 + tolerance)) then
       call errors%push_input(spec%modulus%at, "the modulus rises from "//to_text(spec%young)// &
-          " to "//to_text(last)//" MPa", "a modulus that falls with the plastic strain", code="E149")
+          " to "//to_text(last)//" MPa", "a modulus that falls with the plastic strain", &
+          code="E149")
     end if
   end subroutine check_modulus
 

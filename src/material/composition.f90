@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> The laws of a material: elasticity, a criterion, a hardening law, any number of back-stresses,
-!> which add up, and possibly a law of Young's modulus. The internal variables of a point are the equivalent plastic strain, six components
-!> of each back-stress, then those of the hardening law.
+!> which add up, and possibly a law of Young's modulus. The internal variables of a point are the
+!> equivalent plastic strain, six components of each back-stress, then those of the hardening law.
 module dd3_material_composition
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
@@ -15,7 +15,8 @@ module dd3_material_composition
   implicit none
   private
   public :: composition_t, complete, describe_internal_variables
-  public :: stiffness_ratio, back_stress_of, flow_response_of, add_back_stresses, evolve_internal_variables
+  public :: stiffness_ratio, back_stress_of, flow_response_of, add_back_stresses
+  public :: evolve_internal_variables
 
   !> The laws of a material.
   type :: composition_t

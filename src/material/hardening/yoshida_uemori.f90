@@ -4,8 +4,9 @@
 !> surface, of centre q and radius r in the space of beta, makes the isotropic hardening stagnate
 !> after a reversal. With N' = dev(T - X)/sb, a = B + R - Y,
 !>
-!>     X = alpha + beta,   dalpha = C (a N' - sqrt(a/|alpha|) alpha) dp,   dbeta = m (b N' - beta) dp,
-!>     dR = m (Rsat - R) dp,   dr = h dG,   dq = (1 - h) dG (beta - q)/r
+!>     X = alpha + beta,   dalpha = C (a N' - sqrt(a/|alpha|) alpha) dp,
+!>     dbeta = m (b N' - beta) dp,   dR = m (Rsat - R) dp,
+!>     dr = h dG,   dq = (1 - h) dG (beta - q)/r
 !>
 !> where dG, the rate of |beta - q|, is positive and |beta - q| = r; otherwise R, r and q are
 !> constant. |beta - q| is von Mises' norm; |alpha| is the length of alpha in units of that of N',

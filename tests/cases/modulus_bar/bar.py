@@ -25,7 +25,8 @@ def main():
     elastic = np.concatenate([[stress[0] / YOUNG], stress[0] / YOUNG + np.cumsum(np.diff(stress) / middle)])
     strain = elastic + p
     volume = AREA * LENGTH * np.exp((1 - 2 * POISSON) * elastic)
-    added = np.cumsum(np.diff(1 / modulus(p)) * ((stress[1:] + stress[:-1]) / 2) ** 2 / 2 * (volume[1:] + volume[:-1]) / 2)
+    mean = (stress[1:] + stress[:-1]) / 2
+    added = np.cumsum(np.diff(1 / modulus(p)) * mean**2 / 2 * (volume[1:] + volume[:-1]) / 2)
     end = np.searchsorted(strain, np.log(1.1))
     young = modulus(p[end])
     print(f"p {p[end]:.6f}, E {young:.1f} MPa, modulus_energy {added[end]:.4f} mJ")
