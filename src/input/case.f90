@@ -161,6 +161,8 @@ module dd3_input_case
     !> Young's modulus (MPa) and Poisson's ratio.
     real(wp) :: young = 0.0_wp, poisson = 0.0_wp
     type(law_spec_t) :: yield, hardening
+    !> Law of the modulus; without a name for a constant one.
+    type(law_spec_t) :: modulus
     !> t/mm3; 0 if not given.
     real(wp) :: density = 0.0_wp
     !> Size 0 without a back-stress.

@@ -139,6 +139,8 @@ contains
       row("hardening", kind_law, "", "", "hardening law and its parameters"), &
       row("backstress", kind_law, "", "none", &
           "back-stress law and its parameters, or none; several are summed", repeatable=.true.), &
+      row("modulus", kind_law, "", "none", &
+          "law of Young's modulus over the plastic strain and its parameters; none: constant"), &
       row("density", kind_real, "t/mm3", "-", "density, for gravity; 7.85e-9 for steel", &
           lower=zero, lower_open=.true.), &
       row("rolling_direction", kind_reals, "", "1 0 0", "rolling direction in the initial sheet", &

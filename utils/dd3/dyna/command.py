@@ -260,7 +260,8 @@ class Import:
                  f"# {self.material.keyword} {self.part.material}.", "*MATERIAL blank",
                  f"  young = {self.law.young:g}", f"  poisson = {self.law.poisson:g}",
                  f"  yield = {self.law.criterion}", f"  hardening = {self.law.hardening}",
-                 *(f"  backstress = {law}" for law in self.law.backstresses)]
+                 *(f"  backstress = {law}" for law in self.law.backstresses),
+                 *([f"  modulus = {self.law.modulus}"] if self.law.modulus else [])]
         if self.law.density:
             lines.append(f"  density = {self.law.density:.6g}")
         if self.law.rolling:
