@@ -238,8 +238,9 @@ contains
     drawbead%table = block%numbers("table")
     if (size(drawbead%table) > 0) return
     drawbead%table = [0.0_wp, 1.0_wp]
-    if (block%number("rise") > 0.0_wp) &
-        drawbead%table = [0.0_wp, 0.0_wp, block%number("rise"), 1.0_wp]
+    if (block%number("rise") > 0.0_wp) then
+      drawbead%table = [0.0_wp, 0.0_wp, block%number("rise"), 1.0_wp]
+    end if
   end subroutine fill_drawbead
 
   subroutine fill_boundary(boundary, block)
@@ -297,6 +298,8 @@ contains
           history%moment = .true.
         case ("draw_in")
           history%draw_in = .true.
+        case default
+          ! Refused with the values of the key.
         end select
       end do
     end associate

@@ -88,8 +88,8 @@ contains
   end function contact_energy
 
   !> Return the work on the sheet less internal work, friction work, that of draw-beads and viscous
-  !> forces and the energy of the contact layers, mJ. It vanishes with the increments and the tolerance of
-  !> equilibrium.
+  !> forces and the energy of the contact layers, mJ. It vanishes with the increments and the
+  !> tolerance of equilibrium.
   real(wp) function energy_error(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state

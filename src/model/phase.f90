@@ -93,8 +93,9 @@ contains
     real(wp), intent(in) :: progress
 
     fading_rate = 1.0_wp
-    if (self%opening > 0.0_wp) &
-        fading_rate = merge(1.0_wp/self%opening, 0.0_wp, progress < self%opening - step)
+    if (self%opening > 0.0_wp) then
+      fading_rate = merge(1.0_wp/self%opening, 0.0_wp, progress < self%opening - step)
+    end if
   end function fading_rate
 
   !> Return the next place of the tables behind a progress; 1 without a table.

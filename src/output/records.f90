@@ -83,8 +83,9 @@ contains
     self%restart_increment = state%increment
     lost = ""
     call resume_history(self, model, source, state, lost, error)
-    if (this_rank() == 0 .and. .not. allocated(error)) &
-        call resume_files(self, model, source, state, lost, error)
+    if (this_rank() == 0 .and. .not. allocated(error)) then
+      call resume_files(self, model, source, state, lost, error)
+    end if
     call share_error(error)
     if (allocated(error)) return
     fields_lost = merge(1, 0, index(lost, "fields") > 0)
@@ -160,8 +161,9 @@ contains
     call share_error(error)
     if (allocated(error)) return
     due = fields_due
-    if (model%output%fields == fields_increments) &
-        due = due .or. every(nint(model%output%fields_value(1)), state)
+    if (model%output%fields == fields_increments) then
+      due = due .or. every(nint(model%output%fields_value(1)), state)
+    end if
     if (due) call write_fields(self, model, state, error)
     if (allocated(error)) return
     if (every(model%output%restart_every, state)) call save(self, model, state, error)
@@ -261,8 +263,9 @@ contains
     if (this_rank() == 0) call self%history%flush(error)
     if (this_rank() == 0 .and. .not. allocated(error)) call self%status%flush(error)
     call share_error(error)
-    if (.not. allocated(error)) &
-        call write_restart(self%directory, model, state, self%ended, error)
+    if (.not. allocated(error)) then
+      call write_restart(self%directory, model, state, self%ended, error)
+    end if
   end subroutine save_state
 
   !> Write the last state and close the records. The fields of the last state are no output that was

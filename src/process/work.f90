@@ -90,8 +90,9 @@ contains
       advance = old%tools%layer_offset(tool) - new%tools%layer_offset(tool)
       work(1) = work(1) - dot_product(force, tool_motion + advance*normal)
       work(2) = work(2) + dot_product(force, slip)
-      if (new%contact%status(c) == status_slip .and. old%contact%status(c) /= status_gap) &
-          new%contact%slip_path(c) = new%contact%slip_path(c) + norm2(slip)
+      if (new%contact%status(c) == status_slip .and. old%contact%status(c) /= status_gap) then
+        new%contact%slip_path(c) = new%contact%slip_path(c) + norm2(slip)
+      end if
     end do
     call sum_over_ranks(2, work)
     new%work%tools = work(1)

@@ -108,8 +108,9 @@ contains
       row%shortened = attempt%course%shortened
       row%eliminated = attempt%course%eliminations
       if (allocated(attempt%course%norm)) then
-        if (size(attempt%course%norm) > 0) &
-            row%criterion = attempt%course%norm(size(attempt%course%norm))
+        if (size(attempt%course%norm) > 0) then
+          row%criterion = attempt%course%norm(size(attempt%course%norm))
+        end if
       end if
       if (verdict%element > 0) then
         row%worst_element = verdict%element
@@ -249,6 +250,8 @@ contains
       if (attempt%solver%solver == "petsc_mumps") remedy = support_remedy
     case (cause_large_step)
       if (committed%increment == 0) remedy = support_remedy
+    case default
+      ! Removed by smaller increments.
     end select
   end function remedy_of_input
 

@@ -83,9 +83,10 @@ contains
       call notes%add_new("W116", snap_warning(model, state, elastic_energy(model, state)))
       call add_reactions(model, state, notes)
       call notes%add_new("N104", gap_note(model, state))
-      if (state%phase == size(model%phase)) &
-          call notes%add_new("W115", energy_warning(state, elastic_energy(model, state), &
+      if (state%phase == size(model%phase)) then
+        call notes%add_new("W115", energy_warning(state, elastic_energy(model, state), &
           energy_error(model, state)))
+      end if
     end if
     if (.not. ended .or. state%phase == size(model%phase)) &
         call notes%add_new("W123", necking_warning(model, state))

@@ -382,15 +382,18 @@ contains
         began = wall_time()
         processor = processor_time()
         again = .false.
-        if (predicted .and. phase%newton%cutback .and. attempt%verdict%outcome == verdict_retry) &
-            call cut_back(attempt, again)
+        if (predicted .and. phase%newton%cutback &
+            .and. attempt%verdict%outcome == verdict_retry) then
+          call cut_back(attempt, again)
+        end if
         if (attempt%verdict%outcome == verdict_converged) then
           call return_to_until(attempt, until_fraction(phase, run%committed, run%trial), again)
           if (again) row%reason = cause_text(verdict_t(cause=cause_beyond_until), "")
         end if
         if (again) again = makes_progress(attempt, stepper%prediction%progress)
-        if (attempt%verdict%outcome == verdict_converged .and. .not. again) &
-            call run%adaptivity%judge(model, run%trial, too_late)
+        if (attempt%verdict%outcome == verdict_converged .and. .not. again) then
+          call run%adaptivity%judge(model, run%trial, too_late)
+        end if
         if (too_late) row%outcome = "refined"
         if (again) row%outcome = "retry"
         call run%records%add_attempt(row, error)

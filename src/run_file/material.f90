@@ -38,8 +38,9 @@ contains
         call add_law(json, "hardening", law_hardening, material%hardening)
         call json%begin_array("backstress")
         do i = 1, size(material%backstress)
-          if (.not. same_name(material%backstress(i)%name, "none")) &
-              call add_law(json, "", law_backstress, material%backstress(i))
+          if (.not. same_name(material%backstress(i)%name, "none")) then
+            call add_law(json, "", law_backstress, material%backstress(i))
+          end if
         end do
         call json%end_array()
         if (same_name(material%modulus%name, "none")) then

@@ -133,8 +133,9 @@ contains
     call follow_parents(model, model%x0)
     call new_sheet_faces(model%face, model%element, mesh%connectivity)
     call remove_inner_faces(model)
-    if (model%element%n_enhanced > 0) &
-        model%element%stacked = any([(all(model%column(:, i) /= i), i=1, model%n_node)])
+    if (model%element%n_enhanced > 0) then
+      model%element%stacked = any([(all(model%column(:, i) /= i), i=1, model%n_node)])
+    end if
     call set_thickness(model, mesh%thickness)
     model%tolerance = new_tolerances(model%thickness, mesh%x)
     associate (element => model%element)
