@@ -14,8 +14,8 @@ from dd3.errors import DEBIAN, Problem
 LIBRARIES = ("libEGL.so.1", "libOSMesa.so.8", "libOSMesa.so.6")
 
 # Light on sheets and tools; colours of their outer and sharp edges, and of the edges of elements.
-SURFACE = {"ambient": 0.3, "diffuse": 0.8, "specular": 0.15, "specular_power": 20}
-EDGE, MESH = "#3a3f45", "#333333"
+SURFACE = {"ambient": 0.4, "diffuse": 0.7, "specular": 0.15, "specular_power": 20}
+EDGE, MESH = "#3a3f45", "#808488"
 FONT = matplotlib.get_data_path() + "/fonts/ttf/DejaVuSans.ttf"  # that of the figures
 
 

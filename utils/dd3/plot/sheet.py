@@ -173,8 +173,10 @@ def tool_skin(patches: Patches, placement: Placement, axes: Sequence[str], insid
 
 def sharp_edges(skin: pv.PolyData) -> pv.PolyData:
     """Return the outer edges of a surface, and those between faces at an angle."""
-    return skin.clean(tolerance=ON_PLANE, absolute=False).extract_feature_edges(
-        boundary_edges=True, feature_edges=True, manifold_edges=False, non_manifold_edges=False, feature_angle=SHARP)
+    # Mirror images and neighbouring patches may be turned the other way.
+    turned = skin.clean(tolerance=ON_PLANE, absolute=False).compute_normals(point_normals=False)
+    return turned.extract_feature_edges(boundary_edges=True, feature_edges=True, manifold_edges=False,
+                                        non_manifold_edges=False, feature_angle=SHARP)
 
 
 def add_surface(plotter: Any, skin: pv.PolyData, **options: Any) -> None:
