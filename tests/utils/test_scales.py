@@ -57,6 +57,14 @@ def test_colours():
     assert np.allclose(chosen, scale.colours_of(scale.Scale(0.0, 1.0, 0.2)).colors)
 
 
+def test_labels():
+    """Check that the numbers at a colour bar have room, and that zero is among them."""
+    assert pictures.labelled(scale.Scale(-30.0, 40.0, 10.0)) == [-30, -20, -10, 0, 10, 20, 30, 40]
+    few = pictures.labelled(scale.Scale(0.779993, 0.780001, 1e-6))
+    assert 3 <= len(few) <= 5
+    assert any(abs(tick) < 1e-12 for tick in pictures.labelled(scale.Scale(-3e-6, 5e-6, 1e-6)))
+
+
 def test_per_cent(tmp_path):
     """Check that strains and thinning are shown in per cent, and other fields in their unit."""
     for field, percent in (("thinning", True), ("equivalent_plastic_strain", True), ("strain:11", True),

@@ -51,6 +51,7 @@ VIEWS = {  # direction from the sheet to the camera, and the upward direction
     "below": ((-0.9, -1.6, -0.9), (0, 0, 1)),
 }
 BAR_HEIGHT = 100  # pixels of the strip below the pictures that holds the colour bar
+BAR_CHARACTERS = 45  # of the numbers at a colour bar, at most
 POINTS = 200000  # of a tool, about; at most 25 x 25 of a patch
 SHARP = 40  # angle between faces of the sheet or of a tool above which their edge is sharp, degrees
 ON_PLANE = 1e-6  # distance from a plane of symmetry of what lies on it, over the size of a surface
@@ -214,12 +215,20 @@ def draw(plotter: Any, run: Run, step: int, options: argparse.Namespace, tools: 
     text.prop.SetBackgroundOpacity(1)
 
 
+def labelled(limits: Scale) -> list[float]:
+    """Return the ticks of a colour bar that have room for their numbers, zero among them."""
+    ticks = limits.ticks
+    longest = max((len(f"{tick:.{limits.digits}f}") for tick in ticks), default=0)
+    every = math.ceil(longest * len(ticks) / BAR_CHARACTERS) or 1
+    return ticks[int(np.abs(ticks).argmin()) % every::every] if ticks else []
+
+
 def add_bar(plotter: Any, label: str, limits: Scale, colours: str | None, **place: Any) -> None:
     """Add the colour bar of a scale, with its ticks; `place` and the like are options of pyvista."""
     mapper = pv.DataSetMapper(pv.PointSet(np.zeros((1, 3))))
     mapper.lookup_table = pv.LookupTable(scale.colours_of(limits, colours), scalar_range=limits[:2])
     bar = plotter.add_scalar_bar(title=label + "\n", mapper=mapper, fmt=f"%.{limits.digits}f", color="black", **place)
-    bar.SetCustomLabels(pv.convert_array(np.array(limits.ticks)))
+    bar.SetCustomLabels(pv.convert_array(np.array(labelled(limits))))
     bar.SetUseCustomLabels(True)
     for text in (bar.GetTitleTextProperty(), bar.GetLabelTextProperty()):
         rendering.use_font(text)
