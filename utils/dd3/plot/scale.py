@@ -80,11 +80,14 @@ def own_scale(limits: Sequence[float]) -> Scale:
     return Scale(limits[0], limits[1], step_of(*limits))
 
 
-def colours_of(scale: Scale, name: str | None = None) -> ListedColormap:
-    """Return the colours of a scale from its lower to its upper limit: of a map by its name, or by the rule above."""
+def colours_of(scale: Scale, chosen: str | Sequence[str] | None = None) -> ListedColormap:
+    """Return the colours of a scale from its lower to its upper limit: those of a list, of a map by its name, or by the
+    rule above."""
+    if not (chosen is None or isinstance(chosen, str)):
+        return ListedColormap(chosen)
     at = np.linspace(0, 1, COLOURS)
-    if name is None and scale.is_signed:
+    if chosen is None and scale.is_signed:
         values = scale.low + at * (scale.high - scale.low)
         at = 0.5 + 0.5 * values / max(-scale.low, scale.high)
-    known = matplotlib.colormaps[name or (DIVERGING if scale.is_signed else SEQUENTIAL)]
+    known = matplotlib.colormaps[chosen or (DIVERGING if scale.is_signed else SEQUENTIAL)]
     return ListedColormap(known(at))
