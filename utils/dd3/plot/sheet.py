@@ -387,7 +387,10 @@ def limits_of(run: Run, steps: Sequence[int], options: argparse.Namespace) -> Sc
         return scale.own_scale(options.limits)
     drawn = [run.mesh(step, options.field, options.cells)[0]["shown"] for step in steps]
     low, high = (float(end) for end in (min(map(np.min, drawn)), max(map(np.max, drawn))))
-    return Scale(*levels.limits_of(int(high)), 1.0) if options.field == levels.LEVEL else scale.round_scale(low, high)
+    if options.field == levels.LEVEL:
+        low, high = levels.limits_of(int(high))
+        return Scale(low, high, 1.0)
+    return scale.round_scale(low, high)
 
 
 def new_plotter(options: argparse.Namespace, count: int) -> Any:
