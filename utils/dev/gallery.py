@@ -5,9 +5,9 @@
     utils/dev/gallery.py --program build/release/dd3imp --work build/gallery            make the runs that are missing
     utils/dev/gallery.py --program build/release/dd3imp --work build/gallery --write    and pictures and tables
 
-Each example is an input file beside measured or published values, which are those of the script of its report. `--only`
-selects examples; finished runs are kept. The runs take about ten minutes of processor time together. A run that warns of
-its mesh (W009, W109) is refused.
+Each example is an input file beside measured or published values, which are those of the script of its report. Finished
+runs are kept; `--only` selects those to make. All take about eight minutes of processor time together. A run that warns
+of its mesh (W009, W109) is refused.
 """
 
 import json
