@@ -15,8 +15,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from dd3 import report
 from dd3.command import new_parser
 from dd3.errors import Problem
@@ -60,8 +58,6 @@ def show_window(run: Path, field: str | None = None, at: str | None = None, mirr
     plotter: Any = pv.Plotter(title=f"{run}: {chosen.field}")
     plotter.set_background("white")
     label = one.mesh(one.last, chosen.field, chosen.cells)[1]
-    bar = pv.DataSetMapper(pv.PointSet(np.zeros((1, 3))))
-    bar.lookup_table = pv.LookupTable(chosen.colours, scalar_range=limits)
     shown: list[str] = []
 
     def show(value: float) -> None:
@@ -73,7 +69,7 @@ def show_window(run: Path, field: str | None = None, at: str | None = None, mirr
         shown[:] = added
         plotter.camera_position, plotter.camera.parallel_scale = place, scale  # where it was moved to
 
-    plotter.add_scalar_bar(title=label, mapper=bar, vertical=True, fmt="%.3g", color="black", title_font_size=16)
+    pictures.add_bar(plotter, label, limits, chosen.colours, vertical=True, title_font_size=16)
     pictures.aim(plotter, box, chosen)
     plotter.add_slider_widget(show, [0, one.last], value=one.step_at(at) if at else one.last,
                               title="step", fmt="%.0f", pointa=(0.3, 0.08), pointb=(0.7, 0.08))

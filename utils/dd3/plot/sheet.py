@@ -2,12 +2,13 @@
 """Draw the deformed sheet between its tools, coloured by a field, and its draw-beads. No display is needed.
 
     dd3 plot sheet bending.out
-    dd3 plot sheet bending.out --at 10 --at 40 --field stress:11 --view front --mirror x
+    dd3 plot sheet bending.out --at 10 --at 40 --field stress:11 --view front --mirror x --mesh
     dd3 plot sheet cup.out --field level --hide all             # elements by how often they have been divided
     dd3 plot sheet bending.dat                                 # before a run
 
 The sheet and the tools' displacements are read from fields.vtkhdf, their surfaces from the .bez files that
-the run used; for files that were moved since give --tool. Several --at give several pictures below each other. Of an
+the run used; for files that were moved since give --tool. Several --at give several pictures below each other. Strains
+and thinning are in per cent, and so are their --limits; zero is white where a field has both signs. Of an
 input file the initial state is drawn, which the program writes after its checks, also if a tool lies in the sheet: do
 the tools lie where they should?
 """
@@ -32,8 +33,9 @@ from dd3.bound import closed_skin
 from dd3.command import new_parser
 from dd3.errors import LOG, Problem
 from dd3.fields import AT, Fields, text_of
-from dd3.plot import levels
+from dd3.plot import levels, scale
 from dd3.plot.beads import draw_beads
+from dd3.plot.scale import Scale
 from dd3.programs import add_program, command, find_program, launch, setting
 from dd3.progress import each
 from dd3.run import file_of, read_job
@@ -50,9 +52,11 @@ VIEWS = {  # direction from the sheet to the camera, and the upward direction
     "below": ((-0.9, -1.6, -0.9), (0, 0, 1)),
 }
 BAR_HEIGHT = 100  # pixels of the strip below the pictures that holds the colour bar
+BAR_CHARACTERS = 45  # of the numbers at a colour bar, at most
 POINTS = 200000  # of a tool, about; at most 25 x 25 of a patch
-MANY_PATCHES = 300  # number above which only the outer edges of a tool are drawn
 FIELD, DOTS = "equivalent_plastic_strain", 150  # field of a run; pixels of an inch of a figure
+SHARP = 40  # angle between faces of the sheet or of a tool above which their edge is sharp, degrees
+ON_PLANE = 1e-6  # distance from a plane of symmetry of what lies on it, over the size of a surface
 TOOL_COLOURS = ["#8d99a6", "#a69b8d", "#93a68d", "#a08da6"]
 
 Box = tuple[np.ndarray, np.ndarray]
@@ -74,7 +78,8 @@ class Style:
     """How a sheet is drawn.
 
     field: field, or field:component, such as stress:11; level: how often the elements were divided. cells: values at
-    the elements in place of the nodes. limits: range of the colours. colours: colour map. view: one of VIEWS, or a
+    the elements in place of the nodes. limits: range of the colours. colours: colour map; one by the
+    scale. view: one of VIEWS, or a
     direction "x y z". zoom: 1 for the whole sheet. focus: point in the middle, mm. mirror: planes of symmetry to
     complete the model at, such as "xy". tools: files of surfaces in place of those that the run names, by the names of
     the tools. hide: tools and draw-beads to leave out, or "all". edges: those of the elements. size: of one picture,
@@ -84,7 +89,7 @@ class Style:
     field: str = FIELD
     cells: bool = False
     limits: Sequence[float] | None = None
-    colours: str | list[str] = "viridis"
+    colours: str | Sequence[str] | None = None
     view: str = "iso"
     zoom: float = 1.0
     focus: Sequence[float] | None = None
@@ -92,12 +97,12 @@ class Style:
     tools: Mapping[str, str | Path] = dataclass_field(default_factory=dict)
     hide: Sequence[str] = ()
     tool_opacity: float = 0.35
-    edges: bool = True
+    edges: bool = False
     size: Sequence[int] = (1500, 800)
 
     def __post_init__(self) -> None:
         self.mirror = sorted(set("".join(self.mirror)))
-        self.cells = self.cells or self.field == levels.LEVEL
+        self.cells, self.edges = (one or self.field == levels.LEVEL for one in (self.cells, self.edges))
         if self.view not in VIEWS and not direction(self.view):
             raise Problem("--view takes one of " + ", ".join(VIEWS) + ' or a direction "x y z"')
         if self.limits and not self.limits[0] < self.limits[1]:
@@ -119,10 +124,10 @@ class Run(Fields):
         self.beads = {bead["name"]: np.array(bead["points"]) for bead in self.job["drawbeads"]}
 
     def mesh(self, step: int, field: str, at_cells: bool = False) -> tuple[pv.UnstructuredGrid, str]:
-        """Return the sheet at a step with its field as `shown`, and the label of the field."""
+        """Return the sheet at a step with its field as `shown`, in the unit of its label, and the label."""
         mesh = self.shape(step)
         data = mesh.cell_data if at_cells else mesh.point_data
-        data["shown"], label = self.component(step, field, at_cells)
+        data["shown"], label = scale.shown(field, *self.component(step, field, at_cells))
         return mesh, label
 
     def tool_placements(self, step: int) -> dict[str, Placement]:
@@ -139,11 +144,10 @@ class Run(Fields):
         return {name: Placement(*of_tool) for name, *of_tool in zip(names, axes, displacements, strict=True)}
 
 
-def tool_surface(patches: Patches, placement: Placement, count: int = POINTS) -> tuple[pv.PolyData, pv.PolyData]:
-    """Return the surface of a tool at its place, of about `count` points, and the edges of its patches; of many patches
-    its outer edges."""
+def tool_surface(patches: Patches, placement: Placement, count: int = POINTS) -> pv.PolyData:
+    """Return the surface of a tool at its place, of about `count` points."""
     finest = max(2, min(24, round(math.sqrt(count / len(patches)))))
-    points, faces, lines, first = [], [], [], 0
+    points, faces, first = [], [], 0
     for shape in {weights.shape for _, weights in patches}:
         alike = [patch for patch in patches if patch[1].shape == shape]
         places = [np.linspace(0, 1, 2 if size == 2 else finest + 1) for size in shape]
@@ -152,67 +156,109 @@ def tool_surface(patches: Patches, placement: Placement, count: int = POINTS) ->
         number = first + np.arange(xyz[..., 0].size).reshape(xyz.shape[:3])
         corners = number[:, :-1, :-1], number[:, :-1, 1:], number[:, 1:, 1:], number[:, 1:, :-1]
         faces.append(np.stack(corners, axis=-1).reshape(-1, 4))
-        for side in (number[:, 0], number[:, -1], number[:, :, 0], number[:, :, -1]):
-            lines.append(np.stack((side[:, :-1], side[:, 1:]), axis=-1).reshape(-1, 2))
         first += number.size
-    xyz, cells, edges = map(np.concatenate, (points, faces, lines))
-    skin = pv.PolyData(xyz, np.insert(cells, 0, 4, axis=1))
-    if len(patches) <= MANY_PATCHES:
-        return skin, pv.PolyData(xyz, lines=np.insert(edges, 0, 2, axis=1))
-    joined = skin.clean(tolerance=1e-6)
-    return skin, joined.extract_feature_edges(boundary_edges=True, feature_edges=True, manifold_edges=False,
-                                              non_manifold_edges=False, feature_angle=30)
+    return pv.PolyData(np.concatenate(points), np.insert(np.concatenate(faces), 0, 4, axis=1))
 
 
 def reflected(mesh: Any, axes: Sequence[str]) -> list[Any]:
     """Return the mesh and its mirror images in the planes normal to the axes."""
     parts = [mesh]
     for axis in axes:
-        normal = tuple(float(axis == a) for a in AXES)
-        parts += [part.reflect(normal, point=(0.0, 0.0, 0.0)) for part in parts]
+        parts += [part.reflect(normal_of(axis), point=(0.0, 0.0, 0.0)) for part in parts]
     return parts
 
 
-def add_sheet(plotter: Any, mesh: pv.UnstructuredGrid, style: Style, limits: Sequence[float]) -> None:
+def normal_of(axis: str) -> tuple[float, ...]:
+    """Return the unit vector along an axis."""
+    return tuple(float(axis == other) for other in AXES)
+
+
+def completed(skin: pv.PolyData, axes: Sequence[str]) -> pv.PolyData:
+    """Return a surface and its mirror images as one, without seams."""
+    return pv.merge(reflected(skin, axes), merge_points=False).clean(tolerance=ON_PLANE, absolute=False)
+
+
+def sheet_skin(mesh: pv.UnstructuredGrid, axes: Sequence[str]) -> pv.PolyData:
+    """Return the surface of a sheet, completed at its planes of symmetry; the faces on these are left out."""
+    skin = closed_skin(mesh).extract_surface(algorithm="dataset_surface", nonlinear_subdivision=2)
+    near = ON_PLANE * diagonal((skin.points.min(axis=0), skin.points.max(axis=0)))
+    for axis in axes:
+        off = np.abs(skin.points[:, AXES.index(axis)]) > near
+        cut = [cell for cell, nodes in enumerate(skin.irregular_faces) if not off[nodes].any()]
+        skin = skin.remove_cells(cut) if cut else skin
+    return completed(skin, axes)
+
+
+def tool_skin(patches: Patches, placement: Placement, axes: Sequence[str], inside: np.ndarray) -> pv.PolyData:
+    """Return the surface of a tool at its place, completed at the planes of symmetry; what lies beyond them, seen from
+    a point inside, is left out."""
+    skin = tool_surface(patches, placement)
+    for axis in axes:
+        skin = skin.clip(normal_of(axis), origin=(0.0, 0.0, 0.0), invert=bool(inside[AXES.index(axis)] < 0))
+    return completed(skin, axes)
+
+
+def sharp_edges(skin: pv.PolyData) -> pv.PolyData:
+    """Return the outer edges of a surface, and those between faces at an angle."""
+    # Mirror images and neighbouring patches may be turned the other way.
+    turned = skin.clean(tolerance=ON_PLANE, absolute=False).compute_normals(point_normals=False)
+    return turned.extract_feature_edges(boundary_edges=True, feature_edges=True, manifold_edges=False,
+                                        non_manifold_edges=False, feature_angle=SHARP)
+
+
+def add_surface(plotter: Any, skin: pv.PolyData, **options: Any) -> None:
+    """Add a surface, smooth between its sharp edges, and these; options are those of pyvista."""
+    plotter.add_mesh(skin, smooth_shading=True, split_sharp_edges=True, feature_angle=SHARP, show_scalar_bar=False,
+                     **rendering.SURFACE, **options)
+    plotter.add_mesh(sharp_edges(skin), color=rendering.EDGE, line_width=1.5)
+
+
+def add_sheet(plotter: Any, mesh: pv.UnstructuredGrid, style: Style, limits: Scale) -> None:
     """Add a sheet with the field `shown`, completed at the planes of symmetry."""
-    for part in reflected(closed_skin(mesh), style.mirror):
-        skin = part.extract_surface(algorithm="dataset_surface", nonlinear_subdivision=2)
-        plotter.add_mesh(skin, scalars="shown", cmap=style.colours, clim=limits, show_edges=style.edges,
-                         edge_color="#333333", line_width=1, show_scalar_bar=False, smooth_shading=False,
-                         lighting=True, ambient=0.25)
+    add_surface(plotter, sheet_skin(mesh, style.mirror), scalars="shown", clim=limits[:2],
+                cmap=scale.colours_of(limits, style.colours), show_edges=style.edges, edge_color=rendering.MESH,
+                line_width=1)
 
 
-def draw(plotter: Any, run: Run, step: int, style: Style, tools: dict[str, Patches], limits: Sequence[float], box: Box
-         ) -> None:
+def draw(plotter: Any, run: Run, step: int, style: Style, tools: dict[str, Patches],
+         limits: Scale, box: Box) -> None:
     """Draw one picture."""
     add_sheet(plotter, run.mesh(step, style.field, style.cells)[0], style, limits)
     # Tools are shifted away from the eye, so that the colours of the sheet show where a tool touches it.
     behind = -0.006 * diagonal(box) * eye(style.view)[0]
-    placements = run.tool_placements(step)
+    placements, inside = run.tool_placements(step), run.points(step).mean(axis=0)
     for number, (name, patches) in enumerate(tools.items()):
-        if name not in placements:
-            continue
-        skin, edges = tool_surface(patches, placements[name])
-        for part in reflected(skin, style.mirror):
-            plotter.add_mesh(part.translate(behind), color=TOOL_COLOURS[number % len(TOOL_COLOURS)],
-                             opacity=style.tool_opacity, smooth_shading=False, ambient=0.2)
-        for part in reflected(edges, style.mirror):
-            plotter.add_mesh(part.translate(behind), color="#444444", line_width=1.5)
+        if name in placements:
+            skin = tool_skin(patches, placements[name], style.mirror, inside)
+            add_surface(plotter, skin.translate(behind), color=TOOL_COLOURS[number % len(TOOL_COLOURS)],
+                        opacity=style.tool_opacity)
     towards = 0.006 * diagonal(box) * eye(style.view)[0]
     draw_beads(plotter, run.beads.values(), run.points(step), towards, lambda line: reflected(line, style.mirror))
     aim(plotter, box, style)
-    text = plotter.add_text(run.state(step), font_size=11, color="black", position="upper_left")
+    text = plotter.add_text(run.state(step), font_size=9, color="black", position="upper_left")
+    rendering.use_font(text.prop)
     text.prop.SetBackgroundColor(1, 1, 1)
     text.prop.SetBackgroundOpacity(1)
 
 
-def draw_bar(plotter: Any, label: str, colours: str | list[str], limits: Sequence[float]) -> None:
-    """Draw the colour bar in a strip below the pictures."""
-    table = pv.LookupTable(colours, scalar_range=limits)
+def labelled(limits: Scale) -> list[float]:
+    """Return the ticks of a colour bar that have room for their numbers, zero among them."""
+    ticks = limits.ticks
+    longest = max((len(f"{tick:.{limits.digits}f}") for tick in ticks), default=0)
+    every = math.ceil(longest * len(ticks) / BAR_CHARACTERS) or 1
+    return ticks[int(np.abs(ticks).argmin()) % every::every] if ticks else []
+
+
+def add_bar(plotter: Any, label: str, limits: Scale, colours: str | Sequence[str] | None,
+            **place: Any) -> None:
+    """Add the colour bar of a scale, with its ticks; `place` and the like are options of pyvista."""
     mapper = pv.DataSetMapper(pv.PointSet(np.zeros((1, 3))))
-    mapper.lookup_table = table
-    plotter.add_scalar_bar(title=label + "\n", mapper=mapper, vertical=False, position_x=0.3, width=0.4, position_y=0.2,
-                           height=0.7, title_font_size=20, label_font_size=17, fmt="%.3g", color="black")
+    mapper.lookup_table = pv.LookupTable(scale.colours_of(limits, colours), scalar_range=limits[:2])
+    bar = plotter.add_scalar_bar(title=label + "\n", mapper=mapper, fmt=f"%.{limits.digits}f", color="black", **place)
+    bar.SetCustomLabels(pv.convert_array(np.array(labelled(limits))))
+    bar.SetUseCustomLabels(True)
+    for text in (bar.GetTitleTextProperty(), bar.GetLabelTextProperty()):
+        rendering.use_font(text)
 
 
 def diagonal(box: Box) -> float:
@@ -277,8 +323,10 @@ def command_line() -> argparse.ArgumentParser:
                         "often the elements have been divided "
                         "(equivalent_plastic_strain; of an input file thickness)")
     parser.add_argument("--cells", action="store_true", help="values at the elements instead of the nodes")
-    parser.add_argument("--limits", type=float, nargs=2, metavar=("LOW", "HIGH"), help="range of the colours")
-    parser.add_argument("--colours", default="viridis", help="colour map (viridis)")
+    parser.add_argument("--limits", type=float, nargs=2, metavar=("LOW", "HIGH"),
+                        help="range of the colours, in the unit of the colour bar: strains and thinning in per cent")
+    parser.add_argument("--colours", metavar="MAP", help=f"colour map of matplotlib ({scale.SEQUENTIAL}; where a field "
+                        f"has both signs {scale.DIVERGING} with white at zero)")
     parser.add_argument("--view", default="iso", help="one of " + ", ".join(VIEWS) + ', or a direction "x y z"')
     parser.add_argument("--zoom", type=float, default=1.0, help="1: the whole sheet")
     parser.add_argument("--focus", type=float, nargs=3, metavar=("X", "Y", "Z"), help="point in the middle, mm")
@@ -288,7 +336,7 @@ def command_line() -> argparse.ArgumentParser:
     parser.add_argument("--hide", action="append", default=[], metavar="NAME",
                         help="tool or draw-bead to leave out, or 'all'")
     parser.add_argument("--tool-opacity", type=float, default=0.35)
-    parser.add_argument("--no-edges", dest="edges", action="store_false", help="leave out the elements' edges")
+    parser.add_argument("--mesh", dest="edges", action="store_true", help="draw the edges of the elements")
     parser.add_argument("--output", default="sheet.png", help="picture to write (sheet.png)")
     parser.add_argument("--size", type=int, nargs=2, default=[1500, 800], metavar=("W", "H"),
                         help="size of one picture in pixels")
@@ -339,17 +387,16 @@ def opened(run: str | Path, program: str | Path | None = None, settings: Mapping
         yield Run(folder, before=True)
 
 
-def limits_of(run: Run, steps: Sequence[int], style: Style) -> Sequence[float]:
-    """Return the range of the colours: that of the style, or of all values drawn."""
+def limits_of(run: Run, steps: Sequence[int], style: Style) -> Scale:
+    """Return the scale of the colours: between the limits of the style, or round for all values drawn."""
+    if style.limits and style.field != levels.LEVEL:
+        return scale.own_scale(style.limits)
+    drawn = [run.mesh(step, style.field, style.cells)[0]["shown"] for step in steps]
+    low, high = (float(end) for end in (min(map(np.min, drawn)), max(map(np.max, drawn))))
     if style.field == levels.LEVEL:
-        return levels.limits_of(int(max(run.mesh(step, style.field, True)[0]["shown"].max() for step in steps)))
-    if style.limits:
-        return list(style.limits)
-    ranges = [run.mesh(step, style.field, style.cells)[0]["shown"] for step in steps]
-    low, high = min(r.min() for r in ranges), max(r.max() for r in ranges)
-    if high - low <= 1e-9 * max(abs(low), abs(high)):
-        high = low + max(1e-3, 1e-3 * abs(low))
-    return [low, high]
+        low, high = levels.limits_of(int(high))
+        return Scale(low, high, 1.0)
+    return scale.round_scale(low, high)
 
 
 def new_plotter(size: Sequence[int], count: int = 1) -> Any:
@@ -383,7 +430,9 @@ def make_picture(run: Run, style: Style, output: str | Path | None, at: Sequence
 def make_map(mesh: pv.UnstructuredGrid, label: str, style: Style, output: str | Path) -> None:
     """Draw a sheet alone with its field `shown` and write the picture."""
     points = np.concatenate([part.points for part in reflected(mesh, style.mirror)])
-    limits = style.limits or (0.0, float(mesh.point_data["shown"].max()) or 1.0)
+    values = mesh.point_data["shown"]
+    limits = scale.own_scale(style.limits) if style.limits else scale.round_scale(float(min(0.0, values.min())),
+                                                                                     float(values.max()))
     plotter = new_plotter(style.size)
     plotter.subplot(0, 0)
     add_sheet(plotter, mesh, style, limits)
@@ -410,14 +459,15 @@ def figure(run: str | Path, at: Sequence[str | float] = (), program: str | Path 
     return found
 
 
-def finish(plotter: Any, label: str, colours: str | list[str], limits: Sequence[float], output: str | Path | None,
+def finish(plotter: Any, label: str, colours: str | Sequence[str] | None, limits: Scale, output: str | Path | None,
            names: Sequence[str] = ()) -> np.ndarray:
     """Draw the colour bar below the pictures, of levels the legend with their names; write and return them."""
     plotter.subplot(plotter.shape[0] - 1, 0)
     if names:
         levels.draw_legend(plotter, names)
     else:
-        draw_bar(plotter, label, colours, limits)
+        add_bar(plotter, label, limits, colours, vertical=False, position_x=0.25, width=0.5, position_y=0.2,
+                height=0.7, title_font_size=17, label_font_size=15)
     try:
         return np.asarray(plotter.screenshot(output, return_img=True))
     except (OSError, ValueError) as error:
