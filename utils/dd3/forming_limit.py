@@ -37,6 +37,7 @@ from dd3.plot.figures import new_figure, save
 from dd3.run import read_job
 from dd3.sheet import Sheet
 from dd3.surface_strain import cell_strains
+from dd3.tables import read_text
 
 ZONES = ("no strain", "thickening", "safe", "marginal", "critical")
 COLOURS = ("#d0d4d8", "#56b4e9", "#009e73", "#f0e442", "#d55e00")  # safe for the colour-blind
@@ -85,8 +86,8 @@ def keeler_brazier(thickness: float, exponent: float) -> Curve:
                  f"Keeler-Brazier, t = {thickness:.3g} mm, n = {exponent:.3g}")
 
 
-def read_curve(path: str | Path, engineering: bool = False, account: Account | None = None) -> Curve:
-    """Read a measured curve, a table with minor and major strain."""
+def read_rows(path: str | Path, engineering: bool = False, account: Account | None = None) -> list[Any]:
+    """Return the rows of a table with minor and major strain, checked, the minor strain increasing."""
     highest = math.expm1(LARGEST) if engineering else LARGEST
     columns = [Column(f"{name} strain", re.compile(pattern, re.IGNORECASE), STRAIN, low, highest, EXPECTED, engineering)
                for name, pattern, low in (
@@ -99,9 +100,22 @@ def read_curve(path: str | Path, engineering: bool = False, account: Account | N
                                "the minor strain first, then the major strain, or a heading that names the columns")
         if major <= 0:
             raise line.problem(words[1], f"the major strain, {words[1][0]}, is not positive", "a limit of tension")
+    return sorted(rows, key=lambda row: row.values[0])
+
+
+def read_points(path: str | Path, engineering: bool = False, account: Account | None = None
+                ) -> tuple[np.ndarray, np.ndarray]:
+    """Return the logarithmic minor and major strains of a table with measured limits."""
+    minor, major = np.array([row.values for row in read_rows(path, engineering, account)]).reshape(-1, 2).T
+    return (np.log1p(minor), np.log1p(major)) if engineering else (minor, major)
+
+
+def read_curve(path: str | Path, engineering: bool = False, account: Account | None = None) -> Curve:
+    """Read a curve, a table with minor and major strain. Its label is that of a first line `# curve: ...`, by default
+    the name of the file."""
+    rows = read_rows(path, engineering, account)
     if len(rows) < 2:
         raise Problem(f"{path}: expected at least 2 points of the forming limit curve, got {len(rows)}")
-    rows.sort(key=lambda row: row.values[0])
     for before, row in pairwise(rows):
         if row.values[0] == before.values[0]:
             raise row.line.problem(row.words[0],
@@ -110,7 +124,8 @@ def read_curve(path: str | Path, engineering: bool = False, account: Account | N
     minor, major = np.array([row.values for row in rows]).T
     if engineering:
         minor, major = np.log1p(minor), np.log1p(major)
-    return Curve(minor, major, Path(path).stem)
+    label = re.match(r"#\s*curve:\s*(.*\S)", read_text(path))
+    return Curve(minor, major, label[1] if label else Path(path).stem)
 
 
 @dataclass
