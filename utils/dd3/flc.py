@@ -33,7 +33,7 @@ from dd3.plot.figures import new_figure, save, tidy
 from dd3.tools.set_material import found
 
 LEFT, RIGHT = -0.5, 1.0  # ratios of minor and major strain
-IMPERFECTIONS = 1e-6, 0.2  # 1 - f0: range of the calibration
+IMPERFECTIONS = 1e-5, 0.2  # 1 - f0: range of the calibration
 PRECISION = 1e-3  # of log10(1 - f0) in it
 PLANE = 0.02  # minor strain up to which a measured point counts as plane strain
 

@@ -31,7 +31,6 @@ from dd3.laws_library import Material
 RATIO = 10.0  # of the thickness strain increments of groove and sheet at the limit
 STEP, FIRST, GROWTH = 0.005, 2e-4, 1.5  # of the groove's thickness strain: largest, first, over the one before
 SMALLEST = 1e-6  # step below which there is no solution
-FASTEST = 2.0  # largest thickness strain increment of the sheet over that of the groove: others are no solution
 LARGEST = 2.5  # strain along the path up to which a limit is sought
 NEWTON, SOLVED = 25, 1e-8  # iterations; residual over the stress
 SCAN, HALVINGS = 15.0, 4  # angles of the groove, degrees: steps of the search, refinements
@@ -114,6 +113,11 @@ class Path(NamedTuple):
 
     ratio: float
     prestrain: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def bent(self) -> bool:
+        """Tell whether there is a prestrain."""
+        return any(self.prestrain)
 
     def at(self, length: float) -> tuple[float, float, float, float]:
         """Return the strains along both axes after a length, and their derivatives: the prestrain first; length: its
@@ -198,12 +202,16 @@ class Groove:
         rates = np.array([0.0, 0.0, 1 / sum(self.path.at(0.0)[2:]), -1.0])
         while self.found[2] < ceiling:
             before, thickness = self.found, self.b.thickness
-            if not (self.solve(before + step * rates, thickness - step) and before[3] - self.trial[3] < FASTEST * step):
+            solved = self.solve(before + step * rates, thickness - step)
+            # A sheet that thins faster than the groove is the other branch beyond a bifurcation.
+            if not solved or (not self.path.bent and before[3] - self.trial[3] >= step):
                 step /= 4
-                if step < SMALLEST:
-                    raise Problem(f"no equilibrium of the groove at {math.degrees(math.atan2(*self.normal[::-1])):.3g} "
-                                  f"degrees on the path {self.path.ratio:.3g} at the strain {before[2]:.4g}")
-                continue
+                if step > SMALLEST:
+                    continue
+                if solved:  # the groove does not thin faster, such as one across a compression
+                    return math.inf
+                raise Problem(f"no equilibrium of the groove at {math.degrees(math.atan2(*self.normal[::-1])):.3g} "
+                              f"degrees on the path {self.path.ratio:.3g} at the strain {before[2]:.4g}")
             self.a.accept()
             self.b.accept()
             self.found = self.trial
