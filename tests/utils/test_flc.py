@@ -11,10 +11,10 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from dd3 import places
-from dd3.flc import calibrated, ratios_of
+from dd3.flc import calibrated
 from dd3.forming_limit import read_curve
 from dd3.laws_library import Material
-from dd3.marciniak_kuczynski import RATIO, Groove, Path, Sheet
+from dd3.marciniak_kuczynski import RATIO, Groove, Path, Sheet, ratios_of
 
 pytestmark = pytest.mark.skipif(places.nearest(places.LIBRARY) is None, reason="libdd3laws.so is not built")
 N = 0.22
@@ -64,9 +64,9 @@ def stretching(ratio, path):
         return (1 + path) * rate / (1 + path * rate) - 1 / RATIO
 
     end.terminal = True
-    start = 1e-6
-    done = solve_ivp(rates, (start, 5.0), (start, math.sqrt(4 / 3 * (1 + path + path**2)) * start), events=end,
-                     rtol=1e-9, atol=1e-12)
+    start, ahead = 1e-5, ratio ** (-1 / N)  # the stresses have the ratio f0 at the start
+    done = solve_ivp(rates, (start * ahead, 2.0), (start, math.sqrt(4 / 3 * (1 + path + path**2)) * start * ahead),
+                     events=end, rtol=1e-7, atol=1e-10)
     return float(done.y_events[0][0][0])
 
 
@@ -80,9 +80,11 @@ def test_plane_strain(ratio):
 
 @pytest.mark.parametrize("path", (0.25, 0.5, 1.0))
 def test_stretching(path):
-    """Check biaxial stretching against an independent integration."""
-    found = Sheet(material(), 0.98, step=0.0025).length_at(Path(path), 0.0)
-    assert abs(found - stretching(0.98, path)) < 1e-3 * found, (found, stretching(0.98, path))
+    """Check biaxial stretching against an independent integration; the groove's path bends, the error is of first
+    order in the step."""
+    exact = stretching(0.98, path)
+    off = [abs(Sheet(material(), 0.98, step=step).length_at(Path(path), 0.0) / exact - 1) for step in (0.005, 0.002)]
+    assert off[1] < 5e-3 and off[1] < 0.55 * off[0], off
 
 
 @pytest.mark.parametrize("path", (-0.5, -0.25, 0.0))

@@ -28,20 +28,14 @@ from dd3.command import new_parser
 from dd3.errors import Problem
 from dd3.forming_limit import Curve, read_points
 from dd3.laws_library import Material
-from dd3.marciniak_kuczynski import LARGEST, RATIO, Limit, Path as StrainPath, Sheet
+from dd3.marciniak_kuczynski import LARGEST, LEFT, POINTS, RATIO, RIGHT, Limit, Sheet, curve_of, ratios_of
+from dd3.marciniak_kuczynski import Path as StrainPath
 from dd3.plot.figures import new_figure, save, tidy
 from dd3.tools.set_material import found
 
-LEFT, RIGHT = -0.5, 1.0  # ratios of minor and major strain
 IMPERFECTIONS = 1e-5, 0.2  # 1 - f0: range of the calibration
 PRECISION = 1e-3  # of log10(1 - f0) in it
 PLANE = 0.02  # minor strain up to which a measured point counts as plane strain
-
-
-def ratios_of(points: int) -> np.ndarray:
-    """Return ratios of minor and major strain, with that of plane strain."""
-    left = max(1, round((points - 1) / 3))
-    return np.concatenate([np.linspace(LEFT, 0, left + 1), np.linspace(0, RIGHT, points - left)[1:]])
 
 
 def calibrated(sheet: Sheet, minor: float, major: float) -> float:
@@ -62,17 +56,6 @@ def calibrated(sheet: Sheet, minor: float, major: float) -> float:
         raise Problem(f"the measured limit {major:g} at the minor strain {minor:g} is not reached: with f0 = {f0:.6g} it "
                       f"is {bound + major:.4g}{hint}")
     return 1 - 10 ** float(brentq(excess, *ends, xtol=PRECISION))
-
-
-def curve_of(limits: Sequence[Limit | None], label: str) -> tuple[Curve, list[Limit]]:
-    """Return the curve of limits, of those whose minor strain increases, and these limits."""
-    kept: list[Limit] = []
-    for limit in limits:
-        if limit and (not kept or limit.minor > kept[-1].minor):
-            kept.append(limit)
-    if len(kept) < 2:
-        raise Problem(f"no localisation up to the strain {LARGEST:g} on {len(limits) - len(kept)} of {len(limits)} paths")
-    return Curve([limit.minor for limit in kept], [limit.major for limit in kept], label), kept
 
 
 def compared(sheet: Sheet, minor: np.ndarray, major: np.ndarray) -> list[str]:
@@ -112,7 +95,7 @@ def main(words: Sequence[str] | None = None) -> None:
     group.add_argument("--f0", type=float, metavar="RATIO", help="thickness of the groove over that of the sheet")
     group.add_argument("--calibrate", type=float, nargs=2, metavar=("MINOR", "MAJOR"), help="measured limit that gives f0")
     group.add_argument("--calibrate-plane-strain", type=float, metavar="MAJOR", help="the same, of plane strain")
-    parser.add_argument("--points", type=int, default=13, help="strain paths from minor/major = -0.5 to 1 (13)")
+    parser.add_argument("--points", type=int, default=POINTS, help=f"strain paths from minor/major = -0.5 to 1 ({POINTS})")
     parser.add_argument("--direction", type=float, default=0.0, metavar="DEGREES",
                         help="of the major strain to the rolling direction (0)")
     parser.add_argument("--rate-sensitivity", type=float, default=0.0, metavar="M", help="exponent m (0)")

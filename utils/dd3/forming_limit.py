@@ -7,8 +7,8 @@
 Nodes and elements are judged by the forming limit curve of the material: that of --curve, a table with minor and major
 logarithmic strain (its form is that of `dd3 identify --help`), or that of forming_limit in *MATERIAL. For low-carbon
 steel, by --low-carbon-steel, --n, or grade = low_carbon_steel in *MATERIAL, it is estimated from the thickness and the
-exponent n of the hardening law or of --n (Keeler and Brazier 1977). Without a curve for the material there is no
-verdict.
+exponent n of the hardening law or of --n (Keeler and Brazier 1977). --flc-from-material computes it with the laws of
+the run's own material (`dd3 flc`). Without a curve for the material there is no verdict.
 
 The thinning is judged beside the curve, by --thinning, thinning_limit in *MATERIAL, or 0.25, a convention.
 
@@ -149,6 +149,13 @@ def find_limits(fields: Fields, job: dict[str, Any], options: argparse.Namespace
         thinning, given_by = (min(given), "*MATERIAL") if given else (THINNING, "default; --thinning")
     if options.curve:
         return Limits(read_curve(options.curve, options.engineering, account), "", thinning, given_by)
+    if options.flc_from_material:
+        texts = {text_of(job, material["name"]) for material in materials}
+        if len(texts) != 1:
+            raise Problem("--flc-from-material: the sheet has several materials")
+        # Here, so that the library of the laws is loaded only where it is wanted.
+        from dd3.marciniak_kuczynski import curve_of_text
+        return Limits(curve_of_text(texts.pop(), materials[0]["name"], options.flc_from_material), "", thinning, given_by)
     if options.n or options.low_carbon_steel:
         exponent = options.n or next(filter(None, map(exponent_of, materials)), None)
         if exponent is None:
@@ -171,6 +178,13 @@ def entries_of(job: dict[str, Any], name: str) -> dict[str, str]:
     return {entry["key"]: entry["text"] for block in job["input"]["blocks"] for entry in block["entries"]
             if block["keyword"].lower() == "material" and block["name"].lower() == name.lower()
             and entry["key"] in ("grade", "forming_limit", "thinning_limit")}
+
+
+def text_of(job: dict[str, Any], name: str) -> str:
+    """Return the block *MATERIAL of a run without its name."""
+    entries = [entry for block in job["input"]["blocks"] for entry in block["entries"]
+               if block["keyword"].lower() == "material" and block["name"].lower() == name.lower()]
+    return "".join(f"  {entry['key']} = {entry['text']}\n" for entry in entries)
 
 
 def curve_of(fields: Fields, material: dict[str, Any], entries: dict[str, str]) -> Curve | None:
@@ -283,6 +297,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--low-carbon-steel", action="store_true",
                         help="the material is low-carbon steel: estimate its curve by Keeler and Brazier")
     parser.add_argument("--n", type=float, help="hardening exponent of this estimate")
+    parser.add_argument("--flc-from-material", type=float, metavar="F0",
+                        help="compute the curve of the run's material by Marciniak and Kuczynski with this ratio of the "
+                             "thicknesses of groove and sheet, such as 0.996 (`dd3 flc`)")
     parser.add_argument("--margin", type=float, default=0.1, help="width of the marginal zone in major strain (0.1)")
     parser.add_argument("--thinning", type=float, metavar="LIMIT",
                         help=f"largest thinning allowed (that of *MATERIAL, or {THINNING:g})")
@@ -298,6 +315,11 @@ def check_options(parser: argparse.ArgumentParser, options: argparse.Namespace) 
         parser.error("--engineering goes with --curve")
     if options.curve and (options.low_carbon_steel or options.n):
         parser.error("--curve goes without --low-carbon-steel and --n")
+    if options.flc_from_material is not None:
+        if not 0 < options.flc_from_material < 1:
+            parser.error("--flc-from-material takes a number between 0 and 1, such as 0.996")
+        if options.curve or options.low_carbon_steel or options.n:
+            parser.error("--flc-from-material goes without --curve, --low-carbon-steel and --n")
 
 
 def main(words: Sequence[str] | None = None) -> None:

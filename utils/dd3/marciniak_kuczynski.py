@@ -21,20 +21,23 @@ With a rate sensitivity m the stress of the groove is multiplied by (dp_b/dp_a)^
 
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 from dd3.errors import Problem
+from dd3.forming_limit import Curve
 from dd3.laws_library import Material
 
 RATIO = 10.0  # of the thickness strain increments of groove and sheet at the limit
-STEP, FIRST, GROWTH = 0.005, 2e-4, 1.5  # of the groove's thickness strain: largest, first, over the one before
+STEP, FIRST, GROWTH = 0.002, 2e-4, 1.5  # of the groove's thickness strain: largest, first, over the one before
 SMALLEST = 1e-6  # step below which there is no solution
 LARGEST = 2.5  # strain along the path up to which a limit is sought
 NEWTON, SOLVED = 25, 1e-8  # iterations; residual over the stress
 SCAN, HALVINGS = 15.0, 4  # angles of the groove, degrees: steps of the search, refinements
-COARSE = 2.0  # steps of the search over those of the result
+LEFT, RIGHT, POINTS = -0.5, 1.0, 13  # ratios of minor and major strain of a curve, and their number
+COARSE = 5.0  # steps of the search over those of the result
 PLANE = [0, 1, 3, 2]  # 11 22 12 33 of 11 22 33 12 13 23
 IN_PLANE = np.ix_(PLANE, PLANE)
 STILL = np.zeros((2, 2))
@@ -278,3 +281,27 @@ class Sheet:
             last = found[-1] if found else None
             found.append(self.limit(Path(float(ratio), prestrain), last.angle if last else 0.0))
         return found
+
+
+def ratios_of(points: int) -> np.ndarray:
+    """Return ratios of minor and major strain, with that of plane strain."""
+    left = max(1, round((points - 1) / 3))
+    return np.concatenate([np.linspace(LEFT, 0, left + 1), np.linspace(0, RIGHT, points - left)[1:]])
+
+
+def curve_of(limits: Sequence[Limit | None], label: str) -> tuple[Curve, list[Limit]]:
+    """Return the curve of limits, of those whose minor strain increases, and these limits."""
+    kept: list[Limit] = []
+    for limit in limits:
+        if limit and (not kept or limit.minor > kept[-1].minor):
+            kept.append(limit)
+    if len(kept) < 2:
+        raise Problem(f"no localisation up to the strain {LARGEST:g} on {len(limits) - len(kept)} of {len(limits)} paths")
+    return Curve([limit.minor for limit in kept], [limit.major for limit in kept], label), kept
+
+
+@lru_cache(maxsize=4)
+def curve_of_text(text: str, name: str, ratio: float) -> Curve:
+    """Return the curve of the material of the lines of a block, for a ratio f0; the major strain is along rolling."""
+    sheet = Sheet(Material(text=f"*MATERIAL {name}\n{text}"), ratio)
+    return curve_of(sheet.curve(ratios_of(POINTS)), f"{name}: Marciniak-Kuczynski, f0 = {ratio:g} (assumed)")[0]
