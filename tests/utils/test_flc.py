@@ -2,6 +2,7 @@
 #: {"name": "utils_flc"}
 """Forming limit curves by Marciniak and Kuczynski: closed forms, independent integrations, the command."""
 
+import argparse
 import math
 
 import numpy as np
@@ -10,7 +11,8 @@ from helpers import call
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from dd3 import places
+from dd3 import forming_limit, marciniak_kuczynski, places
+from dd3.errors import Problem
 from dd3.flc import calibrated
 from dd3.forming_limit import read_curve
 from dd3.laws_library import Material
@@ -171,3 +173,23 @@ def test_command(tmp_path):
     assert "is not reached: with f0 = 0.99999 it is 0.19" in said and "--rate-sensitivity" in said
     assert "one of the arguments --f0" in call("flc", sheet, expect=2)
     assert "no such file, and no material of the library" in call("flc", "nosuch", "--f0", 0.99, expect=2)
+
+
+def test_of_run(monkeypatch):
+    """Check the curve of the material of a run, from its description, and of several materials."""
+    monkeypatch.setattr(marciniak_kuczynski, "POINTS", 3)
+    entries = {"young": "2e5", "poisson": "0.3", "yield": "von_mises", "hardening": "swift K=500 e0=0.005 n=0.2"}
+    block = {"keyword": "material", "name": "Steel", "entries": [{"key": key, "text": text} for key, text in entries.items()]}
+    other = {**block, "name": "other", "entries": block["entries"][:2]}
+    job = {"materials": [{"name": "steel"}], "input": {"blocks": [block, other]}}
+    parser = argparse.ArgumentParser()
+    forming_limit.add_options(parser)
+    options = parser.parse_args(["--flc-from-material", "0.99"])
+    curve = forming_limit.find_limits(None, job, options).curve
+    assert "f0 = 0.99 (assumed)" in curve.label and 0.12 < curve.limit(0.0) < 0.195
+    job["materials"].append({"name": "other"})
+    with pytest.raises(Problem, match="several materials"):
+        forming_limit.find_limits(None, job, options)
+    for words, text in (((), "takes a number"), (("--curve", "x.csv"), "goes without")):
+        given = ["1.5"] if not words else ["0.99"]
+        assert text in call("fld", "nosuch", "--flc-from-material", *given, *words, expect=2)
