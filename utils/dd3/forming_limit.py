@@ -7,8 +7,8 @@
 Nodes and elements are judged by the forming limit curve of the material: that of --curve, a table with minor and major
 logarithmic strain (its form is that of `dd3 identify --help`), or that of forming_limit in *MATERIAL. For low-carbon
 steel, by --low-carbon-steel, --n, or grade = low_carbon_steel in *MATERIAL, it is estimated from the thickness and the
-exponent n of the hardening law or of --n (Keeler and Brazier 1977). Without a curve for the material there is no
-verdict.
+exponent n of the hardening law or of --n (Keeler and Brazier 1977). --flc-from-material computes it with the laws of
+the run's own material (`dd3 flc`). Without a curve for the material there is no verdict.
 
 The thinning is judged beside the curve, by --thinning, thinning_limit in *MATERIAL, or 0.25, a convention.
 
@@ -39,6 +39,7 @@ from dd3.plot.figures import new_figure, save
 from dd3.run import read_job
 from dd3.sheet import Sheet
 from dd3.surface_strain import cell_strains
+from dd3.tables import read_text
 
 ZONES = ("no strain", "thickening", "safe", "marginal", "critical")
 COLOURS = ("#d0d4d8", "#56b4e9", "#009e73", "#f0e442", "#d55e00")  # safe for the colour-blind
@@ -88,8 +89,8 @@ def keeler_brazier(thickness: float, exponent: float) -> Curve:
                  f"Keeler-Brazier, t = {thickness:.3g} mm, n = {exponent:.3g}")
 
 
-def read_curve(path: str | Path, engineering: bool = False, account: Account | None = None) -> Curve:
-    """Read a measured curve, a table with minor and major strain."""
+def read_rows(path: str | Path, engineering: bool = False, account: Account | None = None) -> list[Any]:
+    """Return the rows of a table with minor and major strain, checked, the minor strain increasing."""
     highest = math.expm1(LARGEST) if engineering else LARGEST
     columns = [Column(f"{name} strain", re.compile(pattern, re.IGNORECASE), STRAIN, low, highest, EXPECTED, engineering)
                for name, pattern, low in (
@@ -102,9 +103,22 @@ def read_curve(path: str | Path, engineering: bool = False, account: Account | N
                                "the minor strain first, then the major strain, or a heading that names the columns")
         if major <= 0:
             raise line.problem(words[1], f"the major strain, {words[1][0]}, is not positive", "a limit of tension")
+    return sorted(rows, key=lambda row: row.values[0])
+
+
+def read_points(path: str | Path, engineering: bool = False, account: Account | None = None
+                ) -> tuple[np.ndarray, np.ndarray]:
+    """Return the logarithmic minor and major strains of a table with measured limits."""
+    minor, major = np.array([row.values for row in read_rows(path, engineering, account)]).reshape(-1, 2).T
+    return (np.log1p(minor), np.log1p(major)) if engineering else (minor, major)
+
+
+def read_curve(path: str | Path, engineering: bool = False, account: Account | None = None) -> Curve:
+    """Read a curve, a table with minor and major strain. Its label is that of a first line `# curve: ...`, by default
+    the name of the file."""
+    rows = read_rows(path, engineering, account)
     if len(rows) < 2:
         raise Problem(f"{path}: expected at least 2 points of the forming limit curve, got {len(rows)}")
-    rows.sort(key=lambda row: row.values[0])
     for before, row in pairwise(rows):
         if row.values[0] == before.values[0]:
             raise row.line.problem(row.words[0],
@@ -113,7 +127,8 @@ def read_curve(path: str | Path, engineering: bool = False, account: Account | N
     minor, major = np.array([row.values for row in rows]).T
     if engineering:
         minor, major = np.log1p(minor), np.log1p(major)
-    return Curve(minor, major, Path(path).stem)
+    label = re.match(r"#\s*curve:\s*(.*\S)", read_text(path))
+    return Curve(minor, major, label[1] if label else Path(path).stem)
 
 
 @dataclass
@@ -129,11 +144,13 @@ class Limits:
 @dataclass(frozen=True)
 class Criteria:
     """What a sheet is to be judged by, where the material of the run does not say it: a file with the measured forming
-    limit curve, in engineering strains or not; that the material is low-carbon steel, with the exponent n of its
-    hardening, for an estimate of the curve; the width of the marginal zone; the largest thinning, a fraction."""
+    limit curve, in engineering strains or not; the imperfection of a groove, for the curve of the run's own material by
+    Marciniak and Kuczynski; that the material is low-carbon steel, with the exponent n of its hardening, for an
+    estimate of the curve; the width of the marginal zone; the largest thinning, a fraction."""
 
     curve: str | Path | None = None
     engineering: bool = False
+    flc_from_material: float | None = None
     low_carbon_steel: bool = False
     n: float | None = None
     margin: float = 0.1
@@ -148,6 +165,11 @@ class Criteria:
             raise Problem("--engineering goes with --curve")
         if self.curve and (self.low_carbon_steel or self.n):
             raise Problem("--curve goes without --low-carbon-steel and --n")
+        if self.flc_from_material is not None:
+            if not 0 < self.flc_from_material < 1:
+                raise Problem("--flc-from-material takes a number between 0 and 1, such as 0.996")
+            if self.curve or self.low_carbon_steel or self.n:
+                raise Problem("--flc-from-material goes without --curve, --low-carbon-steel and --n")
 
 
 def find_limits(fields: Fields, job: dict[str, Any], criteria: Criteria, account: Account | None = None) -> Limits:
@@ -160,6 +182,14 @@ def find_limits(fields: Fields, job: dict[str, Any], criteria: Criteria, account
         thinning, given_by = (min(given), "*MATERIAL") if given else (THINNING, "default; --thinning")
     if criteria.curve:
         return Limits(read_curve(criteria.curve, criteria.engineering, account), "", thinning, given_by)
+    if criteria.flc_from_material:
+        texts = {text_of(job, material["name"]) for material in materials}
+        if len(texts) != 1:
+            raise Problem("--flc-from-material: the sheet has several materials")
+        # Here, so that the library of the laws is loaded only where it is wanted.
+        from dd3.marciniak_kuczynski import curve_of_text
+        return Limits(curve_of_text(texts.pop(), materials[0]["name"], criteria.flc_from_material), "", thinning,
+                      given_by)
     if criteria.n or criteria.low_carbon_steel:
         exponent = criteria.n or next(filter(None, map(exponent_of, materials)), None)
         if exponent is None:
@@ -182,6 +212,13 @@ def entries_of(job: dict[str, Any], name: str) -> dict[str, str]:
     return {entry["key"]: entry["text"] for block in job["input"]["blocks"] for entry in block["entries"]
             if block["keyword"].lower() == "material" and block["name"].lower() == name.lower()
             and entry["key"] in ("grade", "forming_limit", "thinning_limit")}
+
+
+def text_of(job: dict[str, Any], name: str) -> str:
+    """Return the block *MATERIAL of a run without its name."""
+    entries = [entry for block in job["input"]["blocks"] for entry in block["entries"]
+               if block["keyword"].lower() == "material" and block["name"].lower() == name.lower()]
+    return "".join(f"  {entry['key']} = {entry['text']}\n" for entry in entries)
 
 
 def curve_of(fields: Fields, material: dict[str, Any], entries: dict[str, str]) -> Curve | None:
@@ -321,6 +358,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--low-carbon-steel", action="store_true",
                         help="the material is low-carbon steel: estimate its curve by Keeler and Brazier")
     parser.add_argument("--n", type=float, help="hardening exponent of this estimate")
+    parser.add_argument("--flc-from-material", type=float, metavar="F0",
+                        help="compute the curve of the run's material by Marciniak and Kuczynski with this ratio of the "
+                             "thicknesses of groove and sheet, such as 0.996 (`dd3 flc`)")
     parser.add_argument("--margin", type=float, default=0.1, help="width of the marginal zone in major strain (0.1)")
     parser.add_argument("--thinning", type=float, metavar="LIMIT",
                         help=f"largest thinning allowed (that of *MATERIAL, or {THINNING:g})")

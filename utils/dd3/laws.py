@@ -185,18 +185,20 @@ class Point:
 
     def __init__(self, material: Material) -> None:
         self.material = material
-        self.stress, self.state = np.zeros(6), np.zeros(material.state_size)
+        self.strain, self.stress, self.state = np.zeros(6), np.zeros(6), np.zeros(material.state_size)
         self.tangent = np.zeros((6, 6), order="F")
+        self.said = ctypes.create_string_buffer(LONGEST)
+        # The addresses once: an update takes a few microseconds.
+        self.arguments = (material.handle, *map(pointer, (self.strain, self.stress, self.state, self.tangent)), self.said,
+                          ctypes.c_size_t(LONGEST))
 
-    def update(self, strain: np.ndarray) -> bool:
+    def update(self, strain: np.ndarray | list[float]) -> bool:
         """Integrate over a strain increment, 11 22 33 12 13 23; return False, with stress and state unchanged, where a
         smaller one may succeed."""
-        said, strain = ctypes.create_string_buffer(LONGEST), np.ascontiguousarray(strain, float)
-        code = self.material.library.dd3laws_update(
-            self.material.handle, pointer(strain), pointer(self.stress), pointer(self.state), pointer(self.tangent),
-            said, ctypes.c_size_t(LONGEST))
+        self.strain[:] = strain
+        code = self.material.library.dd3laws_update(*self.arguments)
         if code not in (CONVERGED, RETRY):
-            raise Problem(f"{self.material.name}: {said.value.decode(errors='replace')}")
+            raise Problem(f"{self.material.name}: {self.said.value.decode(errors='replace')}")
         return bool(code == CONVERGED)
 
     def pull(self, strain: float, angle: float = 0.0) -> None:
