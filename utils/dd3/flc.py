@@ -53,8 +53,8 @@ def calibrated(sheet: Sheet, minor: float, major: float) -> float:
         bound, f0 = (highest, 1 - IMPERFECTIONS[0]) if highest <= 0 else (lowest, 1 - IMPERFECTIONS[1])
         hint = ("; laws without rate sensitivity give low limits near plane strain: see --rate-sensitivity, or the "
                 "hardening at large strains" if highest <= 0 else "")
-        raise Problem(f"the measured limit {major:g} at the minor strain {minor:g} is not reached: with f0 = {f0:.6g} it "
-                      f"is {bound + major:.4g}{hint}")
+        raise Problem(f"the measured limit {major:g} at the minor strain {minor:g} is not reached: with f0 = {f0:.6g} "
+                      f"it is {bound + major:.4g}{hint}")
     return 1 - 10 ** float(brentq(excess, *ends, xtol=PRECISION))
 
 
@@ -64,8 +64,8 @@ def compared(sheet: Sheet, minor: np.ndarray, major: np.ndarray) -> list[str]:
     off = np.array([limit.major if limit else math.nan for limit in limits]) / major - 1
     branches = {"left of plane strain": minor < -PLANE, "near plane strain": np.abs(minor) <= PLANE,
                 "right of it": minor > PLANE}
-    return [f"{name}: {of.sum()} measured points, computed over measured major strain {100 * np.mean(off[of]):+.1f} % in "
-            f"the mean, {100 * off[of][np.argmax(np.abs(off[of]))]:+.1f} % at most"
+    return [f"{name}: {of.sum()} measured points, computed over measured major strain "
+            f"{100 * np.mean(off[of]):+.1f} % in the mean, {100 * off[of][np.argmax(np.abs(off[of]))]:+.1f} % at most"
             for name, of in branches.items() if of.any()]
 
 
@@ -93,9 +93,11 @@ def main(words: Sequence[str] | None = None) -> None:
     parser.add_argument("--name", help="of the material, if the file has several")
     group = parser.add_mutually_exclusive_group(required=True)
     group.add_argument("--f0", type=float, metavar="RATIO", help="thickness of the groove over that of the sheet")
-    group.add_argument("--calibrate", type=float, nargs=2, metavar=("MINOR", "MAJOR"), help="measured limit that gives f0")
+    group.add_argument("--calibrate", type=float, nargs=2, metavar=("MINOR", "MAJOR"),
+                       help="measured limit that gives f0")
     group.add_argument("--calibrate-plane-strain", type=float, metavar="MAJOR", help="the same, of plane strain")
-    parser.add_argument("--points", type=int, default=POINTS, help=f"strain paths from minor/major = -0.5 to 1 ({POINTS})")
+    parser.add_argument("--points", type=int, default=POINTS,
+                        help=f"strain paths from minor/major = -0.5 to 1 ({POINTS})")
     parser.add_argument("--direction", type=float, default=0.0, metavar="DEGREES",
                         help="of the major strain to the rolling direction (0)")
     parser.add_argument("--rate-sensitivity", type=float, default=0.0, metavar="M", help="exponent m (0)")
@@ -111,9 +113,11 @@ def main(words: Sequence[str] | None = None) -> None:
     if point and not (point[1] > 0 and LEFT <= point[0] / point[1] <= RIGHT):
         parser.error(f"a measured limit has a positive major strain, minor/major from {LEFT:g} to {RIGHT:g}")
     if options.points < 3 or not 0 <= options.rate_sensitivity < 1 or options.prestrain[1] < 0:
-        parser.error("--points takes at least 3, --rate-sensitivity 0 to below 1, --prestrain a major strain not below 0")
+        parser.error("--points takes at least 3, --rate-sensitivity 0 to below 1, "
+                     "--prestrain a major strain not below 0")
     file = found(options.material)
-    sheet = Sheet(Material(file=file, name=options.name), options.f0 or 1.0, options.direction, options.rate_sensitivity)
+    sheet = Sheet(Material(file=file, name=options.name), options.f0 or 1.0, options.direction,
+                  options.rate_sensitivity)
     account = Account()
     measured = read_points(options.measured, options.engineering, account) if options.measured else None
     source = "given"
@@ -123,7 +127,7 @@ def main(words: Sequence[str] | None = None) -> None:
     rate = f", m = {options.rate_sensitivity:g}" if options.rate_sensitivity else ""
     turned = f", major strain at {options.direction:g} degrees" if options.direction else ""
     before = "" if not any(options.prestrain) else f", prestrain {options.prestrain[0]:g} {options.prestrain[1]:g}"
-    label = f"{options.name or file.stem}: Marciniak-Kuczynski, f0 = {sheet.ratio:.5g} ({source}){rate}{turned}{before}"
+    label = f"{options.name or options.material.stem}: Marciniak-Kuczynski, f0 = {sheet.ratio:.5g} ({source}){rate}{turned}{before}"
     limits = sheet.curve(ratios_of(options.points), (options.prestrain[1], options.prestrain[0]))
     curve, kept = curve_of(limits, label)
     write(options.output, label, kept)
@@ -135,4 +139,5 @@ def main(words: Sequence[str] | None = None) -> None:
                 f"{LARGEST:g} or with a minor strain below that of the path before"] if len(kept) < len(limits) else []
     said = compared(sheet, *measured) if measured is not None and not any(options.prestrain) else []
     print(options.output, picture, label, f"limit: the groove thins {RATIO:g} times as fast as the sheet; plane strain "
-          f"{float(curve.limit(0.0)):.4g}", *said, *left_out, *(f"left out: {item}" for item in account.left_out()), sep="\n")
+          f"{float(curve.limit(0.0)):.4g}", *said, *left_out,
+          *(f"left out: {item}" for item in account.left_out()), sep="\n")

@@ -359,8 +359,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
                         help="the material is low-carbon steel: estimate its curve by Keeler and Brazier")
     parser.add_argument("--n", type=float, help="hardening exponent of this estimate")
     parser.add_argument("--flc-from-material", type=float, metavar="F0",
-                        help="compute the curve of the run's material by Marciniak and Kuczynski with this ratio of the "
-                             "thicknesses of groove and sheet, such as 0.996 (`dd3 flc`)")
+                        help="compute the curve of the run's material by Marciniak and Kuczynski with this ratio of "
+                             "the thicknesses of groove and sheet, such as 0.996 (`dd3 flc`)")
     parser.add_argument("--margin", type=float, default=0.1, help="width of the marginal zone in major strain (0.1)")
     parser.add_argument("--thinning", type=float, metavar="LIMIT",
                         help=f"largest thinning allowed (that of *MATERIAL, or {THINNING:g})")

@@ -9,7 +9,7 @@
 """
 
 import ctypes
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -189,10 +189,10 @@ class Point:
         self.tangent = np.zeros((6, 6), order="F")
         self.said = ctypes.create_string_buffer(LONGEST)
         # The addresses once: an update takes a few microseconds.
-        self.arguments = (material.handle, *map(pointer, (self.strain, self.stress, self.state, self.tangent)), self.said,
-                          ctypes.c_size_t(LONGEST))
+        arrays = (self.strain, self.stress, self.state, self.tangent)
+        self.arguments = (material.handle, *map(pointer, arrays), self.said, ctypes.c_size_t(LONGEST))
 
-    def update(self, strain: np.ndarray | list[float]) -> bool:
+    def update(self, strain: np.ndarray | Sequence[float]) -> bool:
         """Integrate over a strain increment, 11 22 33 12 13 23; return False, with stress and state unchanged, where a
         smaller one may succeed."""
         self.strain[:] = strain

@@ -296,7 +296,8 @@ def curve_of(limits: Sequence[Limit | None], label: str) -> tuple[Curve, list[Li
         if limit and (not kept or limit.minor > kept[-1].minor):
             kept.append(limit)
     if len(kept) < 2:
-        raise Problem(f"no localisation up to the strain {LARGEST:g} on {len(limits) - len(kept)} of {len(limits)} paths")
+        raise Problem(f"no localisation up to the strain {LARGEST:g} on {len(limits) - len(kept)} of {len(limits)} "
+                      "paths")
     return Curve([limit.minor for limit in kept], [limit.major for limit in kept], label), kept
 
 

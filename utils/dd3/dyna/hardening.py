@@ -126,7 +126,8 @@ def yoshida_uemori(row: Row, options: Row, units: Units, law: Law) -> None:
     if not 0 <= extent <= 1 or min(rate, surface, growth, centre) < 0:
         raise Problem(f"{row.place}: error: expected H from 0 to 1, and SC, K, RSAT and SB not negative")
     law.hardening = (f"yoshida_uemori Y={inner * units.stress:.8g} B={outer * units.stress:.8g} C={rate:.8g} "
-                     f"m={surface:.8g} b_sat={centre * units.stress:.8g} Rsat={growth * units.stress:.8g} h={extent:.8g}")
+                     f"m={surface:.8g} b_sat={centre * units.stress:.8g} Rsat={growth * units.stress:.8g} "
+                     f"h={extent:.8g}")
     final, saturation = options.numbers("EA COE")
     if final > 0 and saturation > 0:
         if final * units.stress > law.young:

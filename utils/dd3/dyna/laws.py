@@ -8,8 +8,18 @@ import numpy as np
 
 from dd3.dyna.cards import Card, Row
 from dd3.dyna.deck import Deck
-from dd3.dyna.hardening import (Law, Units, by_curve, chaboche, first_strain, linear, positive, slope, swift,
-                                yoshida_uemori)
+from dd3.dyna.hardening import (
+    Law,
+    Units,
+    by_curve,
+    chaboche,
+    first_strain,
+    linear,
+    positive,
+    slope,
+    swift,
+    yoshida_uemori,
+)
 from dd3.dyna.planar import barlat89_at, yld2000_at
 from dd3.errors import Problem
 

@@ -112,7 +112,8 @@ def command_line() -> argparse.ArgumentParser:
         help="its strain ratio, transverse over along rolling (0.5)")
     add("--hardening", metavar="LAW",
         help=f"law to identify from --curve ({', '.join(LAWS)}), or a law with all its values")
-    add("--curve", metavar="FILE", help="tension curve along rolling; with --backstress or yoshida_uemori it goes on in compression")
+    add("--curve", metavar="FILE",
+        help="tension curve along rolling; with --backstress or yoshida_uemori it goes on in compression")
     add_curve(parser)
     return parser
 

@@ -80,7 +80,7 @@ def closed_part(gmsh: Any, reading: Reading, faces: list[int]) -> Closed | None:
         text, _, _ = whole.result({})  # without other parts of the file
         solid, left_of_solid = closed_solid(gmsh, reading, text, whole, both)
         left = [one for one in openings if any(set(one.edges) == set(other.edges) for other in left_of_solid)]
-        side = solid
+        side = solid or whole
         if solid is None or left:
             alone = side_of(gmsh, shape, text, set(faces), outer)
             left_alone = alone.filled(openings)

@@ -233,19 +233,20 @@ class Side:
             return {one[0]: self.between(one[0], low, low + 2 * np.pi, [self.topology.ends(one[0])[0]] * 2)}
         apart = np.linalg.norm(self.end(*one) - self.end(*other))
         length = 2 * max(apart, np.linalg.norm(self.end(*one) - self.end(*seams[0])))
-        reach = {edge: self.beyond_end(edge, vertex, length) for edge, vertex in (*seams, one)}
+        reach = {edge: self.beyond_end(edge, vertex, float(length)) for edge, vertex in (*seams, one)}
         place = self.crossing(seams[0][0], one[0], reach)
         if place is None:
             return {}
         vertex = self.topology.moved(seams[0][1], self.faces[owners[seams[0][0]][0]].place, place)
         ends = {edge: list(self.topology.ends(edge)) for edge, _ in (*seams, *rims)}
-        bounds = {edge: list(self.topology.bounds(edge)) for edge in ends}
+        bounds = {edge: list[float](self.topology.bounds(edge)) for edge in ends}
         for edge, old in (*seams, *rims):
             last = int(ends[edge][1] == old)
-            start, stop = self.beyond_end(edge, old, 2 * max(apart, float(np.linalg.norm(self.end(edge, old) - place))))
+            length = 2 * max(float(apart), float(np.linalg.norm(self.end(edge, old) - place)))
+            start, stop = self.beyond_end(edge, old, length)
             bounds[edge][last] = float(self.nearest(edge, place[None], start, stop)[0][0])
             ends[edge][last] = vertex
-        return {edge: self.between(edge, *bounds[edge], ends[edge]) for edge in ends}
+        return {edge: self.between(edge, bounds[edge][0], bounds[edge][1], ends[edge]) for edge in ends}
 
     def beyond_end(self, edge: int, vertex: int, length: float) -> tuple[float, float]:
         """Return the parameters of an end of an edge, and of its curve about a length beyond."""
