@@ -127,7 +127,8 @@ def main(words: Sequence[str] | None = None) -> None:
     rate = f", m = {options.rate_sensitivity:g}" if options.rate_sensitivity else ""
     turned = f", major strain at {options.direction:g} degrees" if options.direction else ""
     before = "" if not any(options.prestrain) else f", prestrain {options.prestrain[0]:g} {options.prestrain[1]:g}"
-    label = f"{options.name or options.material.stem}: Marciniak-Kuczynski, f0 = {sheet.ratio:.5g} ({source}){rate}{turned}{before}"
+    label = (f"{options.name or options.material.stem}: Marciniak-Kuczynski, f0 = {sheet.ratio:.5g} ({source})"
+             f"{rate}{turned}{before}")
     limits = sheet.curve(ratios_of(options.points), (options.prestrain[1], options.prestrain[0]))
     curve, kept = curve_of(limits, label)
     write(options.output, label, kept)

@@ -242,8 +242,8 @@ class Side:
         bounds = {edge: list[float](self.topology.bounds(edge)) for edge in ends}
         for edge, old in (*seams, *rims):
             last = int(ends[edge][1] == old)
-            length = 2 * max(float(apart), float(np.linalg.norm(self.end(edge, old) - place)))
-            start, stop = self.beyond_end(edge, old, length)
+            reached = 2 * max(float(apart), float(np.linalg.norm(self.end(edge, old) - place)))
+            start, stop = self.beyond_end(edge, old, reached)
             bounds[edge][last] = float(self.nearest(edge, place[None], start, stop)[0][0])
             ends[edge][last] = vertex
         return {edge: self.between(edge, bounds[edge][0], bounds[edge][1], ends[edge]) for edge in ends}
