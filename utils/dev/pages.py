@@ -83,9 +83,9 @@ PAGES = {
     "bending_criteria": Page(2, f"{BENDING} tests/cases/bending_criteria",
                              (f"tests/benchmark/bending_criteria.py{RUN}",)),
     "bending_study": Page(25, f"{BENDING} input_files/bending_study", (
-        "-m dd3 study run --program {program} --work {work} --cores 1",
-        "-m dd3 study figures --work {work} --output docs/images",
-        "-m dd3 study report docs/reports/bending_study.md --work {work}")),
+        "-m bending_study run --program {program} --work {work} --cores 1",
+        "-m bending_study figures --work {work} --output docs/images",
+        "-m bending_study report docs/reports/bending_study.md --work {work}")),
     "bending_test": Page(6, BENDING, (
         "utils/dev/bending_tables.py --program {program} --work {work} --reuse --write docs/reports/bending_test.md",)),
     "capstan": Page(1, f"{MECHANICS} tests/cases/capstan", (f"tests/capstan/run.py{RUN}",)),

@@ -31,7 +31,7 @@ from typing import Any
 
 from dd3.columns import every
 from dd3.command import new_parser
-from dd3.errors import Problem
+from dd3.errors import LOG, Problem
 from dd3.identify.criterion import CRITERIA, criterion
 from dd3.identify.hardening import BACKSTRESSES, LAWS, hardening
 from dd3.identify.least_squares import UNIT, NoStart, Points
@@ -226,7 +226,7 @@ def identify(options: argparse.Namespace, yields: str = "von_mises") -> None:
         path.write_text(text, encoding="utf-8")
     except OSError as error:
         raise Problem(f"{path}: error: {error.strerror}") from None
-    print(f"{text}\n{points.runs} runs of the program; written to {path}")
+    LOG.info(f"{text}\n{points.runs} runs of the program; written to {path}")
     if options.plot:
         draw(options, text, data, curve)
 

@@ -6,7 +6,6 @@ is one patch of degree 2 x 2, so the surface has no gaps however the faces are t
 regular mesh. The divisions of a face grow until its distance from the CAD, measured at points between the nodes, is
 below the tolerance.
 """
-import argparse
 import os
 import re
 import sys
@@ -35,9 +34,10 @@ from dd3.tools.limits import limited
 from dd3.tools.nagata import groups
 from dd3.tools.parameters import filled, parameters_of
 from dd3.tools.report import REACH, named, up
+from dd3.tools.settings import CAD, ToolSettings
 from dd3.tools.surface import Surface, areas_at, from_nodes, grid, points_at
 
-SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
+SUFFIXES = CAD
 # Gmsh's order of the nodes of a quadrilateral of 9 nodes, as (v, u) rows.
 NINE = np.array([[0, 4, 1], [7, 8, 5], [3, 6, 2]])
 MOST_ROUNDS = 8
@@ -471,7 +471,7 @@ def faults(model: Model, rounds: int) -> tuple[np.ndarray, set[int]]:
     return kink, set(model.face[folded(net)].tolist())
 
 
-def read_file(gmsh: Any, path: Path, model: Model, options: argparse.Namespace) -> list[int]:
+def read_file(gmsh: Any, path: Path, model: Model, options: ToolSettings) -> list[int]:
     """Read a CAD file: set the parts and notes of the model, and return the faces that are chosen."""
     account = Account()
     load(gmsh, path)
@@ -487,7 +487,7 @@ def read_file(gmsh: Any, path: Path, model: Model, options: argparse.Namespace) 
     return faces.chosen(gmsh, path, choose(path, model.parts, options.part), options.faces, options.smooth)
 
 
-def read_closed(gmsh: Any, model: Model, options: argparse.Namespace) -> list[int]:
+def read_closed(gmsh: Any, model: Model, options: ToolSettings) -> list[int]:
     """Read a part whose openings were filled as it was read: set the parts and notes of the model, and return its
     faces."""
     options.closed.load(gmsh)
@@ -496,7 +496,7 @@ def read_closed(gmsh: Any, model: Model, options: argparse.Namespace) -> list[in
     return [tag for _, tag in gmsh.model.getEntities(2)]
 
 
-def read_cad(gmsh: Any, path: Path, options: argparse.Namespace, progress: Progress) -> Model:
+def read_cad(gmsh: Any, path: Path, options: ToolSettings, progress: Progress) -> Model:
     """Return the model of a CAD file, meshed within the tolerance."""
     model = Model()
     tags = read_closed(gmsh, model, options) if options.closed else read_file(gmsh, path, model, options)

@@ -9,7 +9,6 @@ A leg without holder is wiped: bent by the moment M = sigma t^2/4 about the punc
 shoulder by M/l. The arm l between both, along the leg, is l^2 = (R + c)^2 + h^2 - R^2: R the sum of both radii and the
 thickness, c the clearance, h the height between their centres. It becomes small as the leg becomes vertical.
 """
-import argparse
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -19,6 +18,7 @@ import numpy as np
 from dd3.part.loops import Hole
 from dd3.tools.moved import rotation
 from dd3.tools.plane import inside
+from dd3.tools.settings import ToolSettings
 from dd3.tools.surface import Surface, points_at
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ class Pin:
     place: np.ndarray
 
 
-def needed(tools: "ToolSet", stress: Callable[[float], float], holder: float, options: argparse.Namespace,
+def needed(tools: "ToolSet", stress: Callable[[float], float], holder: float, options: ToolSettings,
            friction: float) -> float:
     """Return the force of the pad, N. stress: by the strain in plane strain, MPa; holder: its force, N."""
     t = options.thickness
@@ -67,7 +67,7 @@ def needed(tools: "ToolSet", stress: Callable[[float], float], holder: float, op
     return float(np.linalg.norm(sum(pull.along * (held if pull.held else wiped) for pull in tools.pulls)))
 
 
-def pins(holes: Sequence[Hole], floor: Surface, options: argparse.Namespace) -> list[Pin]:
+def pins(holes: Sequence[Hole], floor: Surface, options: ToolSettings) -> list[Pin]:
     """Return the holes of a level floor, in the coordinates of the placed part, in which pins locate it: the two
     farthest from each other."""
     around = points_at(floor.net, np.array([0.0, 1.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0, 1.0]))

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Input file that draws a part with the tools that were made of it, and releases it."""
-import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -11,6 +10,7 @@ from dd3.tools import set_material
 from dd3.tools.beads import Beads
 from dd3.tools.pad_force import Pin
 from dd3.tools.set_blank import Blank
+from dd3.tools.settings import ToolSettings
 from dd3.tools.tool_set import ToolSet
 
 # Elements of the undivided blank, about; length of the smallest ones over the least radius of the tools, on which one
@@ -133,7 +133,7 @@ CLAMP = """*PHASE clamp
 """
 
 
-def deck(options: argparse.Namespace, tools: ToolSet, beads: Beads, command: str) -> str:
+def deck(options: ToolSettings, tools: ToolSet, beads: Beads, command: str) -> str:
     """Return the input file: tools, draw-beads, the command that made these."""
     low, high = tools.blank.box
     smallest = max(min(OF_RADIUS * tools.radius, (8 * SAG * options.thickness * tools.radius)**0.5),
@@ -174,7 +174,7 @@ def write_blank(folder: Path, blank: Blank, part: str) -> None:
                      f"outline of the blank of {part}")
 
 
-def said(options: argparse.Namespace, blank: Blank) -> str:
+def said(options: ToolSettings, blank: Blank) -> str:
     """Return size, area and weight of a blank in words."""
     density, of = set_material.density_of(options.material), "" if options.material else " of steel"
     if density is None:
@@ -200,7 +200,7 @@ def pinned(pins: Sequence[Pin]) -> str:
                    for number, (pin, axes) in enumerate(zip(pins, fixed), 1))
 
 
-def sag(options: argparse.Namespace, blank: Blank) -> float | None:
+def sag(options: ToolSettings, blank: Blank) -> float | None:
     """Return the deflection of a blank under its weight on two supports at the ends of its longer side, mm, None
     without a density."""
     density = set_material.density_of(options.material)
@@ -210,7 +210,7 @@ def sag(options: argparse.Namespace, blank: Blank) -> float | None:
     return 5 * 12 * density * EARTH * span**4 / (384 * stiffness * options.thickness**2)
 
 
-def notes(options: argparse.Namespace, tools: ToolSet) -> list[tuple[str, str]]:
+def notes(options: ToolSettings, tools: ToolSet) -> list[tuple[str, str]]:
     """Return lines of the report on what holds the blank, and its weight."""
     lines = []
     if "pad" in tools.surfaces:

@@ -6,7 +6,7 @@ tool is at the distance of the thickness and the clearance. The part's own flang
 die and under the holder; where the part ends on a wall, the wall of the die goes on to a shoulder and the binder. The
 highest point of the binder is at z = 0.
 """
-import argparse
+from copy import copy
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -24,6 +24,7 @@ from dd3.tools.offset import at_distance
 from dd3.tools.pad_force import Pin, Pull, pins
 from dd3.tools.rims import Rim, border_rims, find_rims, lengths, patches, wall
 from dd3.tools.set_blank import Blank
+from dd3.tools.settings import ToolSettings
 from dd3.tools.surface import Surface, from_nodes, turned
 
 # Defaults over the thickness: clearance, radius of the shoulder, margin of the blank; smaller ones for a drawing ratio
@@ -71,12 +72,12 @@ class ToolSet:
     lines: list[tuple[str, str]] = field(default_factory=list)
 
 
-def both_sides(gmsh: Any, options: argparse.Namespace, progress: Any
+def both_sides(gmsh: Any, options: ToolSettings, progress: Any
               ) -> tuple[Surface, Surface, dict[str, np.ndarray], list[str]]:
     """Return the surfaces of the punch and the die in the closed press, both with normals upwards, into the cavity, the
     largest distances of their faces from the CAD by the names of the tools, mm, and the roles of the faces."""
     gap = options.thickness + options.clearance
-    fine, least = argparse.Namespace(**vars(options)), options.radius
+    fine, least = copy(options), options.radius
     if options.sharp:  # an offset enlarges what the patches of the fillets are off the CAD
         fine.tolerance *= options.radius / (options.radius + gap)
         least *= JUST
@@ -103,7 +104,7 @@ def both_sides(gmsh: Any, options: argparse.Namespace, progress: Any
     return found[0], found[1], distance, [options.roles.get(tag, "") for tag in model.origin]
 
 
-def refuse_left_out(model: cad.Model, options: argparse.Namespace) -> None:
+def refuse_left_out(model: cad.Model, options: ToolSettings) -> None:
     """Refuse a choice of faces, not made by the user, that leaves out a part of what is seen from the punch."""
     if options.faces or options.taken:
         return
@@ -118,9 +119,9 @@ def refuse_left_out(model: cad.Model, options: argparse.Namespace) -> None:
                       f"the shape of a part: --faces {both} takes them too, or choose those that one tool touches")
 
 
-def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
+def made(gmsh: Any, options: ToolSettings, progress: Any) -> ToolSet:
     """Return the tools of a part; where the patches along its rim are too long for the die face, it is meshed again."""
-    options = argparse.Namespace(**vars(options), longest=np.inf)
+    options = copy(options)
     for _ in range(MESHED):
         punch, die, distance, roles = both_sides(gmsh, options, progress)
         own = own_flange.labels_of(die, roles, shoulder=False)
@@ -180,7 +181,7 @@ def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
 
 
 def without_holder(punch: Surface, die: Surface, distance: dict[str, np.ndarray], reason: str,
-                   options: argparse.Namespace) -> ToolSet:
+                   options: ToolSettings) -> ToolSet:
     """Return the tools of a part that gets no binder, both sides of it with strips as wide as the blank needs."""
     result = ToolSet(distance=distance, lines=[("", note) for note in punch.notes + die.notes])
     result.blank = estimated(die.net, [no_holder.outer_rim(die)[0]], result.lines, options)
@@ -218,7 +219,7 @@ def one_sided(face: Face, pulled: list[Pull]) -> bool:
     return bool(np.linalg.norm(sum(pull.along for pull in pulled)) > ONE_SIDED * total)
 
 
-def with_walls(part: own_flange.Trimmed, face: Face, options: argparse.Namespace
+def with_walls(part: own_flange.Trimmed, face: Face, options: ToolSettings
                ) -> tuple[Surface, list[tuple[Rim, np.ndarray]]]:
     """Return the punch, whose normals are upwards, with its walls continued to the height of the holder, and its
     normals downwards; and its rims, with the curves where it ends."""
@@ -245,7 +246,7 @@ def nearest(face: Face, rim: Rim) -> Reach:
     return min(face.reaches, key=lambda reach: cKDTree(reach.rim.points).query(rim.points)[0].mean())
 
 
-def holder_of(gmsh: Any, face: Face, curves: list[tuple[Rim, np.ndarray]], options: argparse.Namespace) -> Surface:
+def holder_of(gmsh: Any, face: Face, curves: list[tuple[Rim, np.ndarray]], options: ToolSettings) -> Surface:
     """Return the holder on the sheet on the binder, as wide as the die, and inwards up to the clearance between die
     and punch, normals downwards."""
     gap = options.thickness + options.clearance

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Input file that cuts a drawn part along its rims and holes and releases it, the file of these curves, and that of the
 process that draws the part and cuts it."""
-import argparse
 
 import numpy as np
 
 from dd3.curve import write_curves
 from dd3.tools import set_material
 from dd3.tools.moved import rotation
+from dd3.tools.settings import ToolSettings
 
 DECK, CURVES, PROCESS = "trim.dat", "trim.txt", "part.toml"
 TEXT = """# Cuts the sheet of draw.dat along the rims and holes of {part}, and releases it.
@@ -42,7 +42,7 @@ deck = "trim.dat"
 """
 
 
-def write(options: argparse.Namespace, height: float) -> None:
+def write(options: ToolSettings, height: float) -> None:
     """Write the curves of a part, where the die has it, the input file and the process; `height` is that of the part in
     the coordinates of the tools, mm."""
     matrix, move = rotation(options.rotate), np.array(options.move) + np.array([0.0, 0.0, height])

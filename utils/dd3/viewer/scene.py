@@ -5,7 +5,6 @@ The scripts of the page read the description of a scene. Its steps are those of 
 the free shape once more, moved to the best fit with the drawn one.
 """
 
-import argparse
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
@@ -221,9 +220,8 @@ class Scene:
 
     def tools(self) -> Iterator[dict[str, Any]]:
         """Return the surfaces of the tools whose files are there."""
-        options = argparse.Namespace(hide=[], tool=[])
         numbers = {tool["name"]: i + 1 for i, tool in enumerate(self.run.job["tools"])}
-        for name, patches in pictures.find_tools(self.run, options).items():
+        for name, patches in pictures.find_tools(self.run).items():
             skin = pictures.tool_surface(patches, pictures.Placement(np.eye(3), np.zeros(3)), TOOL_POINTS)
             edges = pictures.sharp_edges(skin)
             quads = skin.faces.reshape(-1, 5)[:, 1:]
