@@ -392,7 +392,10 @@ def limits_of(run: Run, steps: Sequence[int], style: Style) -> Scale:
         return scale.own_scale(style.limits)
     drawn = [run.mesh(step, style.field, style.cells)[0]["shown"] for step in steps]
     low, high = (float(end) for end in (min(map(np.min, drawn)), max(map(np.max, drawn))))
-    return Scale(*levels.limits_of(int(high)), 1.0) if style.field == levels.LEVEL else scale.round_scale(low, high)
+    if style.field == levels.LEVEL:
+        low, high = levels.limits_of(int(high))
+        return Scale(low, high, 1.0)
+    return scale.round_scale(low, high)
 
 
 def new_plotter(size: Sequence[int], count: int = 1) -> Any:
