@@ -73,10 +73,10 @@ def test_per_cent(tmp_path):
     values, label = scale.shown("thinning", np.array([0.05]), "thinning")
     assert values == pytest.approx([5.0]) and label == "thinning (%)"
     run = pictures.Run(made_run(tmp_path))
-    options = pictures.arguments([str(run.folder), "--field", "stress:13"])
+    options = pictures.Style("stress:13")
     assert run.mesh(0, "stress:13")[1] == "stress 13"
     assert pictures.limits_of(run, [0, 1], options).low == 0
-    options = pictures.arguments([str(run.folder), "--field", "stress:13", "--limits", "3", "50"])
+    options = pictures.Style("stress:13", limits=(3.0, 50.0))
     assert pictures.limits_of(run, [0, 1], options)[:2] == (3, 50)
 
 

@@ -54,9 +54,9 @@ VIEWS = {  # direction from the sheet to the camera, and the upward direction
 BAR_HEIGHT = 100  # pixels of the strip below the pictures that holds the colour bar
 BAR_CHARACTERS = 45  # of the numbers at a colour bar, at most
 POINTS = 200000  # of a tool, about; at most 25 x 25 of a patch
-FIELD, DOTS = "equivalent_plastic_strain", 150  # field of a run; pixels of an inch of a figure
 SHARP = 40  # angle between faces of the sheet or of a tool above which their edge is sharp, degrees
 ON_PLANE = 1e-6  # distance from a plane of symmetry of what lies on it, over the size of a surface
+FIELD, DOTS = "equivalent_plastic_strain", 150  # field of a run; pixels of an inch of a figure
 TOOL_COLOURS = ["#8d99a6", "#a69b8d", "#93a68d", "#a08da6"]
 
 Box = tuple[np.ndarray, np.ndarray]
@@ -78,18 +78,17 @@ class Style:
     """How a sheet is drawn.
 
     field: field, or field:component, such as stress:11; level: how often the elements were divided. cells: values at
-    the elements in place of the nodes. limits: range of the colours. colours: colour map; one by the
-    scale. view: one of VIEWS, or a
-    direction "x y z". zoom: 1 for the whole sheet. focus: point in the middle, mm. mirror: planes of symmetry to
-    complete the model at, such as "xy". tools: files of surfaces in place of those that the run names, by the names of
-    the tools. hide: tools and draw-beads to leave out, or "all". edges: those of the elements. size: of one picture,
-    pixels.
+    the elements in place of the nodes. limits: range of the colours, in the unit shown: strains and thinning in per
+    cent. colours: colour map, by default that of dd3.plot.scale. view: one of VIEWS, or a direction "x y z". zoom: 1
+    for the whole sheet. focus: point in the middle, mm. mirror: planes of symmetry to complete the model at, such as
+    "xy". tools: files of surfaces in place of those that the run names, by the names of the tools. hide: tools and
+    draw-beads to leave out, or "all". mesh: draw the edges of the elements. size: of one picture, pixels.
     """
 
     field: str = FIELD
     cells: bool = False
     limits: Sequence[float] | None = None
-    colours: str | Sequence[str] | None = None
+    colours: str | list[str] | None = None
     view: str = "iso"
     zoom: float = 1.0
     focus: Sequence[float] | None = None
@@ -97,12 +96,13 @@ class Style:
     tools: Mapping[str, str | Path] = dataclass_field(default_factory=dict)
     hide: Sequence[str] = ()
     tool_opacity: float = 0.35
-    edges: bool = False
+    mesh: bool = False
     size: Sequence[int] = (1500, 800)
 
     def __post_init__(self) -> None:
         self.mirror = sorted(set("".join(self.mirror)))
-        self.cells, self.edges = (one or self.field == levels.LEVEL for one in (self.cells, self.edges))
+        if self.field == levels.LEVEL:
+            self.cells = self.mesh = True
         if self.view not in VIEWS and not direction(self.view):
             raise Problem("--view takes one of " + ", ".join(VIEWS) + ' or a direction "x y z"')
         if self.limits and not self.limits[0] < self.limits[1]:
@@ -216,7 +216,7 @@ def add_surface(plotter: Any, skin: pv.PolyData, **options: Any) -> None:
 def add_sheet(plotter: Any, mesh: pv.UnstructuredGrid, style: Style, limits: Scale) -> None:
     """Add a sheet with the field `shown`, completed at the planes of symmetry."""
     add_surface(plotter, sheet_skin(mesh, style.mirror), scalars="shown", clim=limits[:2],
-                cmap=scale.colours_of(limits, style.colours), show_edges=style.edges, edge_color=rendering.MESH,
+                cmap=scale.colours_of(limits, style.colours), show_edges=style.mesh, edge_color=rendering.MESH,
                 line_width=1)
 
 
@@ -249,8 +249,7 @@ def labelled(limits: Scale) -> list[float]:
     return ticks[int(np.abs(ticks).argmin()) % every::every] if ticks else []
 
 
-def add_bar(plotter: Any, label: str, limits: Scale, colours: str | Sequence[str] | None,
-            **place: Any) -> None:
+def add_bar(plotter: Any, label: str, limits: Scale, colours: str | list[str] | None, **place: Any) -> None:
     """Add the colour bar of a scale, with its ticks; `place` and the like are options of pyvista."""
     mapper = pv.DataSetMapper(pv.PointSet(np.zeros((1, 3))))
     mapper.lookup_table = pv.LookupTable(scale.colours_of(limits, colours), scalar_range=limits[:2])
@@ -336,7 +335,7 @@ def command_line() -> argparse.ArgumentParser:
     parser.add_argument("--hide", action="append", default=[], metavar="NAME",
                         help="tool or draw-bead to leave out, or 'all'")
     parser.add_argument("--tool-opacity", type=float, default=0.35)
-    parser.add_argument("--mesh", dest="edges", action="store_true", help="draw the edges of the elements")
+    parser.add_argument("--mesh", action="store_true", help="draw the edges of the elements")
     parser.add_argument("--output", default="sheet.png", help="picture to write (sheet.png)")
     parser.add_argument("--size", type=int, nargs=2, default=[1500, 800], metavar=("W", "H"),
                         help="size of one picture in pixels")
@@ -388,7 +387,7 @@ def opened(run: str | Path, program: str | Path | None = None, settings: Mapping
 
 
 def limits_of(run: Run, steps: Sequence[int], style: Style) -> Scale:
-    """Return the scale of the colours: between the limits of the style, or round for all values drawn."""
+    """Return the scale of the colours: between the limits of --limits, or round for all values drawn."""
     if style.limits and style.field != levels.LEVEL:
         return scale.own_scale(style.limits)
     drawn = [run.mesh(step, style.field, style.cells)[0]["shown"] for step in steps]
@@ -459,7 +458,7 @@ def figure(run: str | Path, at: Sequence[str | float] = (), program: str | Path 
     return found
 
 
-def finish(plotter: Any, label: str, colours: str | Sequence[str] | None, limits: Scale, output: str | Path | None,
+def finish(plotter: Any, label: str, colours: str | list[str] | None, limits: Scale, output: str | Path | None,
            names: Sequence[str] = ()) -> np.ndarray:
     """Draw the colour bar below the pictures, of levels the legend with their names; write and return them."""
     plotter.subplot(plotter.shape[0] - 1, 0)
