@@ -1,5 +1,4 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-#: {"name": "utils_flc"}
 """Forming limit curves by Marciniak and Kuczynski: closed forms, independent integrations, the command."""
 
 import argparse
