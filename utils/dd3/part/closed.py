@@ -9,7 +9,7 @@ along parallel lines is replaced by its profile, extruded beyond its ends (see `
 """
 import tempfile
 from collections import Counter
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -124,14 +124,17 @@ def extruded(gmsh: Any, reading: Reading, profile: Profile, faces: list[int], op
              curves: list[np.ndarray]) -> Closed:
     """Return the extruded profile of a part, longer than the part: the blank covers it and is cut at its ends."""
     beyond = BEYOND_ENDS * (reading.sheet.thickness or 0.0)
-    profile = replace(profile, low=profile.low - beyond, high=profile.high + beyond)
+    floor = {tag for tag, role in reading.roles.items() if role.name == "floor"}
+    own, profile = profile, profile.continued(beyond, floor)
+    across = any((one.points != other.points).any() for one, other in zip(own.chains, profile.chains))
     with silence():
         extrude(gmsh, profile)
         text = written_by(gmsh)
         read_text(gmsh, text)
     numbers, edges = faces_of(gmsh, profile), edges_of(gmsh, profile, reading.shape)
     notes = [*reading.left_out, *reading.notes,
-             f"profile of the bent part, continued by {beyond:.3g} mm beyond its ends",
+             f"profile of the bent part, continued by {beyond:.3g} mm beyond its ends"
+             + (", and beyond the open end of its floor" if across else ""),
              *(["filled: " + summary([one.words for one in openings])] if openings else [])]
     return Closed(text, numbers, [tag for tag, number in numbers.items() if number in set(faces)], edges, openings,
                   curves, notes)
