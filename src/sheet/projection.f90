@@ -1,6 +1,8 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Curves and sheet in one plane. With a direction of projection it is the plane normal to that; for
-!> curves on the sheet it is that of the initial sheet, on which their closest points are mapped.
+!> curves on the sheet it is that of the initial sheet, on which they are mapped through the
+!> thickness, along the columns of nodes: closest points of the middle would change their order
+!> where the sheet is bent.
 module dd3_sheet_projection
   use dd3_base_error, only : error_list_t
   use dd3_base_kinds, only : sqrt2, wp
@@ -37,11 +39,12 @@ contains
     !> Gets curves that lie off the sheet.
     type(error_list_t), intent(inout) :: errors
 
-    real(wp) :: base(3, 2), middle(3, grid%n_column)
+    real(wp) :: base(3, 2), middle(3, grid%n_column), half(3, grid%n_column)
     real(wp), allocatable :: mapped(:, :)
     integer :: k
 
     middle = 0.5_wp*(sheet%x(:, grid%node(0, :)) + sheet%x(:, grid%node(grid%n_layer, :)))
+    half = 0.5_wp*(sheet%x(:, grid%node(grid%n_layer, :)) - sheet%x(:, grid%node(0, :)))
     allocate (loop(size(curve)))
     if (norm2(spec%along) > 0.0_wp) then
       base = base_across(spec%along)
@@ -53,7 +56,7 @@ contains
     end if
     plane = sheet%mesh%x(:2, grid%node(0, :))
     do k = 1, size(curve)
-      call map_curve(grid, middle, plane, curve(k), spec, mapped, errors)
+      call map_curve(grid, middle, half, plane, curve(k), spec, mapped, errors)
       call new_loop(loop(k), mapped)
     end do
   end subroutine project_curves
@@ -73,10 +76,11 @@ contains
   end function base_across
 
   !> Map a curve on the initial sheet.
-  subroutine map_curve(grid, middle, plane, curve, spec, mapped, errors)
+  subroutine map_curve(grid, middle, half, plane, curve, spec, mapped, errors)
     type(grid_t), intent(in) :: grid
-    !> Positions of the columns in the middle of the thickness, mm, and on the initial sheet.
-    real(wp), intent(in) :: middle(:, :), plane(:, :)
+    !> Positions of the columns in the middle of the thickness, vectors from there to the top, and
+    !> positions on the initial sheet, mm.
+    real(wp), intent(in) :: middle(:, :), half(:, :), plane(:, :)
     type(curve_t), intent(in) :: curve
     type(trim_spec_t), intent(in) :: spec
     !> `(2, n)`, mm.
@@ -101,7 +105,7 @@ contains
         associate (from => curve%point(:, i), to => curve%point(:, mod(i, n) + 1))
           point = from + (real(j - 1, wp)/real(parts(i), wp))*(to - from)
         end associate
-        call map_point(grid, middle, plane, point, mapped(:, k), distance)
+        call map_point(grid, middle, half, plane, point, mapped(:, k), distance)
         largest = max(largest, distance)
       end do
     end do
@@ -134,16 +138,16 @@ contains
         q=1, grid%n_quad)])/(sqrt2*real(grid%n_quad, wp))
   end function mean_length
 
-  !> Map a point to the initial sheet by its closest point on the quadrilaterals near it; beyond the
-  !> border they are extended.
-  pure subroutine map_point(grid, middle, plane, point, mapped, distance)
+  !> Map a point to the initial sheet by its natural coordinates in the quadrilateral, among those
+  !> near it, that it lies in or is next to; beyond the border of the sheet they are extended.
+  pure subroutine map_point(grid, middle, half, plane, point, mapped, distance)
     type(grid_t), intent(in) :: grid
-    real(wp), intent(in) :: middle(:, :), plane(:, :), point(3)
+    real(wp), intent(in) :: middle(:, :), half(:, :), plane(:, :), point(3)
     real(wp), intent(out) :: mapped(2)
     !> Distance from the sheet, mm.
     real(wp), intent(out) :: distance
 
-    real(wp) :: to_centre(grid%n_quad), natural(2), excess, least, d
+    real(wp) :: to_centre(grid%n_quad), natural(3), excess, least, off
     logical :: left(grid%n_quad)
     integer :: k, q
 
@@ -157,38 +161,43 @@ contains
     do k = 1, min(n_near, grid%n_quad)
       q = minloc(to_centre, dim=1, mask=left)
       left(q) = .false.
-      call closest_on_quad(middle(:, grid%corner(:, q)), point, natural, d)
-      excess = max(0.0_wp, maxval(abs(natural)) - 1.0_wp)
-      if (excess + d/max(tiny(1.0_wp), to_centre(q)) >= least) cycle
-      least = excess + d/max(tiny(1.0_wp), to_centre(q))
-      mapped = matmul(plane(:, grid%corner(:, q)), bilinear(natural))
-      distance = d
+      associate (corner => grid%corner(:, q))
+        call find_natural(middle(:, corner), half(:, corner), point, natural)
+        off = max(0.0_wp, abs(natural(3)) - 1.0_wp)* &
+            norm2(matmul(half(:, corner), bilinear(natural(:2))))
+        excess = max(0.0_wp, maxval(abs(natural(:2))) - 1.0_wp) &
+            + off/max(tiny(1.0_wp), to_centre(q))
+        if (excess >= least) cycle
+        least = excess
+        mapped = matmul(plane(:, corner), bilinear(natural(:2)))
+        distance = off
+      end associate
     end do
   end subroutine map_point
 
-  !> Find the closest point of a bilinear quadrilateral that is extended beyond its edges, by the
-  !> method of Gauss and Newton.
-  pure subroutine closest_on_quad(corner, point, natural, distance)
-    real(wp), intent(in) :: corner(3, 4), point(3)
-    real(wp), intent(out) :: natural(2), distance
+  !> Find the natural coordinates of a point in a quadrilateral with a thickness, which are extended
+  !> beyond its sides, by Newton's method; the third one is -1 at the bottom and 1 at the top.
+  pure subroutine find_natural(middle, half, point, natural)
+    real(wp), intent(in) :: middle(3, 4), half(3, 4), point(3)
+    real(wp), intent(out) :: natural(3)
 
-    real(wp) :: residual(3), a(3), b(3), aa, ab, bb, step(2)
+    real(wp) :: place(3, 4), residual(3), a(3), b(3), c(3), volume, step(3)
     integer :: i
 
     natural = 0.0_wp
     do i = 1, most_iterations
-      residual = point - matmul(corner, bilinear(natural))
-      a = matmul(corner, 0.25_wp*corner_sign(1, :)*(1.0_wp + corner_sign(2, :)*natural(2)))
-      b = matmul(corner, 0.25_wp*corner_sign(2, :)*(1.0_wp + corner_sign(1, :)*natural(1)))
-      aa = dot_product(a, a)
-      ab = dot_product(a, b)
-      bb = dot_product(b, b)
-      step = [bb*dot_product(a, residual) - ab*dot_product(b, residual), &
-          aa*dot_product(b, residual) - ab*dot_product(a, residual)]/(aa*bb - ab**2)
+      place = middle + natural(3)*half
+      residual = point - matmul(place, bilinear(natural(:2)))
+      a = matmul(place, 0.25_wp*corner_sign(1, :)*(1.0_wp + corner_sign(2, :)*natural(2)))
+      b = matmul(place, 0.25_wp*corner_sign(2, :)*(1.0_wp + corner_sign(1, :)*natural(1)))
+      c = matmul(half, bilinear(natural(:2)))
+      volume = dot_product(a, cross(b, c))
+      if (.not. abs(volume) > 0.0_wp) exit
+      step = [dot_product(residual, cross(b, c)), dot_product(residual, cross(c, a)), &
+          dot_product(residual, cross(a, b))]/volume
       natural = max(-farthest, min(farthest, natural + step))
       if (maxval(abs(step)) < 1.0e-10_wp) exit
     end do
-    distance = norm2(point - matmul(corner, bilinear(natural)))
-  end subroutine closest_on_quad
+  end subroutine find_natural
 
 end module dd3_sheet_projection

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Data of the 3D view of a page: arrays, skins, fields, zones, deviations; without a browser."""
 
-import argparse
 import base64
 import gzip
 import json
@@ -35,7 +34,7 @@ def scene(tmp_path):
     """Return the scene of the made-up run, with its description and arrays."""
     folder = viewed_run(tmp_path / "strip.out")
     sheet, run = Sheet(folder), Run(folder)
-    options = argparse.Namespace(thinning=0.12, curve=None, n=None, low_carbon_steel=False)
+    options = forming_limit.Criteria(thinning=0.12)
     made = Scene(sheet, run, ["x", "y"], forming_limit.find_limits(sheet, run.job, options), 0.1)
     return made, made.description(), made.arrays.elements
 

@@ -14,7 +14,6 @@ from dd3 import places
 from dd3.deck import Deck, text_of
 from dd3.errors import LOG, InputError, Problem, Stopped
 from dd3.programs import command, find_program
-from dd3.progress import Progress
 from dd3.run import Run, read_frame, read_job
 
 LOOKS = 0.05, 1.0  # seconds between two looks at a run, at its start and later
@@ -44,6 +43,7 @@ def simulate(deck: str | Path | Deck, set: Mapping[str, Any] | None = None, *, t
                              *(["--restart", restart] if restart else [])]
     words = command(find_program(program or places.program()), deck, folder, options,
                     {name: text_of(value) for name, value in (set or {}).items()})
+    from dd3.progress import Progress  # here, as results are read without tqdm
     bar = Progress(deck.name, shown=True) if progress is True else None
     try:
         code, said = follow(words, folder, bar or (progress if callable(progress) else None))
