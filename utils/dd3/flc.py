@@ -93,7 +93,8 @@ def main(words: Sequence[str] | None = None) -> None:
     parser.add_argument("--name", help="of the material, if the file has several")
     group = parser.add_mutually_exclusive_group(required=True)
     group.add_argument("--f0", type=float, metavar="RATIO", help="thickness of the groove over that of the sheet")
-    group.add_argument("--calibrate", type=float, nargs=2, metavar=("MINOR", "MAJOR"), help="measured limit that gives f0")
+    group.add_argument("--calibrate", type=float, nargs=2, metavar=("MINOR", "MAJOR"),
+                       help="measured limit that gives f0")
     group.add_argument("--calibrate-plane-strain", type=float, metavar="MAJOR", help="the same, of plane strain")
     parser.add_argument("--points", type=int, default=POINTS, help=f"strain paths from minor/major = -0.5 to 1 ({POINTS})")
     parser.add_argument("--direction", type=float, default=0.0, metavar="DEGREES",
@@ -135,4 +136,5 @@ def main(words: Sequence[str] | None = None) -> None:
                 f"{LARGEST:g} or with a minor strain below that of the path before"] if len(kept) < len(limits) else []
     said = compared(sheet, *measured) if measured is not None and not any(options.prestrain) else []
     print(options.output, picture, label, f"limit: the groove thins {RATIO:g} times as fast as the sheet; plane strain "
-          f"{float(curve.limit(0.0)):.4g}", *said, *left_out, *(f"left out: {item}" for item in account.left_out()), sep="\n")
+          f"{float(curve.limit(0.0)):.4g}", *said, *left_out, *(f"left out: {item}" for item in account.left_out()),
+          sep="\n")

@@ -14,9 +14,10 @@ The thickness strain of the groove is prescribed in steps, so that the limit is 
 the path and the thickness strain of the sheet are found by Newton's method with the consistent tangents. Strain
 increments and rotation of the material axes of a zone are those of the polar decomposition of its step, as in the
 program. The limit strain is reached when the groove thins RATIO times as fast as the sheet; the limit of a path is the
-least over the angles of the groove.
+least over the angles of the groove. The error is of first order in the step where the path of the groove bends.
 
-With a rate sensitivity m the stress of the groove is multiplied by (dp_b/dp_a)^m, p the equivalent plastic strain.
+With a rate sensitivity m the stress of the groove is multiplied by (dp_b/dp_a)^m, p the equivalent plastic strain,
+from the step after the yield point.
 """
 
 import math
@@ -85,6 +86,7 @@ class Zone:
         self.tangent = axes.T @ point.tangent[IN_PLANE] @ axes
         self.plastic = float(point.state[0] - self.committed[1][0])
         self.work = float(point.stress[PLANE] @ strain)
+        self.flows = self.plastic > 0 and self.committed[1][0] > 0  # not in the step of the yield point
         return True
 
     def accept(self) -> None:
@@ -178,7 +180,7 @@ class Groove:
         n = self.normal / gradient.diagonal()
         turning = -n * along.diagonal() / gradient.diagonal()
         thick_a, thick_b = math.exp(a.trial[1]), self.sheet.ratio * math.exp(b.trial[1])
-        faster = rate > 0 and a.plastic > 0 and b.plastic > 0
+        faster = rate > 0 and a.flows and b.flows
         if faster:
             thick_b *= (b.plastic / a.plastic) ** rate
         difference = thick_b * b.stress - thick_a * a.stress
