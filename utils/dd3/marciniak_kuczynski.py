@@ -114,25 +114,9 @@ def inverse_of(matrix: np.ndarray) -> np.ndarray:
 
 
 class Path(NamedTuple):
-    """A strain path: minor over major strain, after a prestrain (major, minor)."""
+    """A proportional strain path: minor over major strain. Its length is the major strain."""
 
     ratio: float
-    prestrain: tuple[float, float] = (0.0, 0.0)
-
-    @property
-    def bent(self) -> bool:
-        """Tell whether there is a prestrain."""
-        return any(self.prestrain)
-
-    def at(self, length: float) -> tuple[float, float, float, float]:
-        """Return the strains along both axes after a length, and their derivatives: the prestrain first; length: its
-        larger strain, then the major strain beyond it."""
-        first, second = self.prestrain
-        size = max(abs(first), abs(second))
-        if size > 0 and length < size:
-            return first * length / size, second * length / size, first / size, second / size
-        beyond = length - size
-        return first + beyond, second + self.ratio * beyond, 1.0, self.ratio
 
 
 class Limit(NamedTuple):
@@ -159,12 +143,11 @@ class Groove:
         """Find the unknowns for a thickness strain of the groove; return False where Newton's method fails."""
         x = guess.copy()
         for _ in range(NEWTON):
-            first, second, by_first, by_second = self.path.at(x[2])
-            gradient = np.array([[math.exp(first), 0.0], [0.0, math.exp(second)]])
+            gradient = np.array([[math.exp(x[2]), 0.0], [0.0, math.exp(self.path.ratio * x[2])]])
             if not (self.a.attempt(gradient, x[3])
                     and self.b.attempt(gradient + x[:2, None] * self.normal, thickness)):
                 return False
-            residual, matrix = self.balance(gradient, np.array([[by_first], [by_second]]) * gradient)
+            residual, matrix = self.balance(gradient, np.array([[1.0], [self.path.ratio]]) * gradient)
             if np.abs(residual).max() <= SOLVED * max(np.abs(self.b.stress).max(), 1e-300):
                 self.trial = x
                 return True
@@ -204,12 +187,12 @@ class Groove:
     def limit(self, ceiling: float, largest: float) -> float:
         """Return the length of the path at the limit, infinity if it is above a ceiling; largest: step."""
         step, slowness, middle = FIRST, 1.0, 0.0
-        rates = np.array([0.0, 0.0, 1 / sum(self.path.at(0.0)[2:]), -1.0])
+        rates = np.array([0.0, 0.0, 1 / (1 + self.path.ratio), -1.0])
         while self.found[2] < ceiling:
             before, thickness = self.found, self.b.thickness
             solved = self.solve(before + step * rates, thickness - step)
             # A sheet that thins faster than the groove is the other branch beyond a bifurcation.
-            if not solved or (not self.path.bent and before[3] - self.trial[3] >= step):
+            if not solved or before[3] - self.trial[3] >= step:
                 step /= 4
                 if step > SMALLEST:
                     continue
@@ -270,18 +253,17 @@ class Sheet:
                 if length < least:
                     best, least = angle, length
                     break
-        first, second, *_ = path.at(least)
-        turned = math.degrees(math.atan2(math.sin(math.radians(best)) * math.exp(-second),
-                                         math.cos(math.radians(best)) * math.exp(-first)))
-        return Limit(first, second, abs(best) if self.symmetric else best, abs(turned) if self.symmetric else turned)
+        minor = path.ratio * least
+        turned = math.degrees(math.atan2(math.sin(math.radians(best)) * math.exp(-minor),
+                                         math.cos(math.radians(best)) * math.exp(-least)))
+        return Limit(least, minor, abs(best) if self.symmetric else best, abs(turned) if self.symmetric else turned)
 
-    def curve(self, ratios: Sequence[float] | np.ndarray, prestrain: tuple[float, float] = (0.0, 0.0)
-              ) -> list[Limit | None]:
+    def curve(self, ratios: Sequence[float] | np.ndarray) -> list[Limit | None]:
         """Return the limits of paths, by their ratio of minor and major strain."""
         found: list[Limit | None] = []
         for ratio in ratios:
             last = found[-1] if found else None
-            found.append(self.limit(Path(float(ratio), prestrain), last.angle if last else 0.0))
+            found.append(self.limit(Path(float(ratio)), last.angle if last else 0.0))
         return found
 
 
