@@ -22,7 +22,9 @@ program dd3imp
   if (this_rank() > 0 .and. (allocated(error) .or. options%version .or. options%help)) then
     exit_code = merge(exit_usage, exit_end, allocated(error))
   else if (allocated(error)) then
+    ! allow(C181)
     write (error_unit, '(a)', iostat=ignored) "dd3imp: "//error%message
+    ! allow(C181)
     write (error_unit, '(a)', advance="no", iostat=ignored) usage_text()
     exit_code = exit_usage
   else if (options%version) then
@@ -33,6 +35,7 @@ program dd3imp
   else
     call run_job(options, exit_code)
   end if
+  ! allow(C181)
   flush (error_unit, iostat=ignored)
   call end_ranks()
   call end_program(exit_code)

@@ -176,8 +176,9 @@ contains
 
     settings = contact_report(model)
     if (size(case%point) == 0) then
-      if (this_rank() == 0) &
-          call find_job_size(job, model, start%state, solver_options(start), solver, ignored)
+      if (this_rank() == 0) then
+        call find_job_size(job, model, start%state, solver_options(start), solver, ignored)
+      end if
       if (allocated(solver)) call solver%release()
       call new_expected_mesh(mesh, case, model, start%state)
     end if
@@ -185,8 +186,9 @@ contains
     write (output_unit, '(a)', advance="no") echo_case(case)//default_report(case, model)// &
         normal_report(case, model)// &
         tool_report(model)//settings//limits_report(model)//drawbead_report(model)
-    if (allocated(start%sheet_report)) &
-        write (output_unit, '(a)', advance="no") start%sheet_report
+    if (allocated(start%sheet_report)) then
+      write (output_unit, '(a)', advance="no") start%sheet_report
+    end if
     if (size(case%point) == 0) then
       write (output_unit, '(a)', advance="no") size_report(job, mesh%at_end)//mesh%report()// &
           time_report(model, start%state, mesh%mean_number())
@@ -231,8 +233,9 @@ contains
         if (there) call fatal_error(error, "'"//directory//"' holds results of a run; "// &
             "--initial needs a folder without", "E205")
       end do
-      if (this_rank() == 0 .and. .not. allocated(error)) &
-          call fields%open(model, directory, error)
+      if (this_rank() == 0 .and. .not. allocated(error)) then
+        call fields%open(model, directory, error)
+      end if
       call share_error(error)
       if (allocated(error)) return
       call fields%write(model, start%state, error)

@@ -20,19 +20,19 @@ module dd3_app_memory
   integer(c_int), parameter :: code_stopped = 3
 
   !> Message on the error stream and in job.log, and that in run.json.
-  character(len=*), parameter :: message = "stopped E202: not enough memory, or a library ended "// &
-      "the program with a message of its own; a mesh with fewer elements needs less memory, or "// &
-      "raise the limit (ulimit -v, the memory asked of a batch queue)"//new_line("a")
+  character(len=*), parameter :: message = "stopped E202: not enough memory, or a library "// &
+      "ended the program with a message of its own; a mesh with fewer elements needs less "// &
+      "memory, or raise the limit (ulimit -v, the memory asked of a batch queue)"//new_line("a")
   character(len=*), parameter :: ended_message = "the program was ended, most often for lack "// &
       "of memory; see job.log"
 
   !> Path of run.json, its temporary name, both with a null character, and its content then; not
   !> allocated if there is none.
-  character(len=:), allocatable, save :: run_path, run_part, run_text
+  character(len=:), allocatable :: run_path, run_part, run_text
   !> Descriptor of job.log; negative if there is none.
-  integer(c_int), save :: log_descriptor = -1
+  integer(c_int) :: log_descriptor = -1
   !> Whether the program ends as it should.
-  logical, save :: finished = .false.
+  logical :: finished = .false.
 
 contains
 
@@ -93,8 +93,9 @@ contains
     if (.not. allocated(run_text)) return
     file = posix_creat(run_part, mode)
     if (file < 0) return
-    if (posix_write(file, run_text, len(run_text, c_size_t)) == len(run_text, c_size_t)) &
-        ignored = posix_rename(run_part, run_path)
+    if (posix_write(file, run_text, len(run_text, c_size_t)) == len(run_text, c_size_t)) then
+      ignored = posix_rename(run_part, run_path)
+    end if
   end subroutine write_run_file
 
 end module dd3_app_memory

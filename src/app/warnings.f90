@@ -130,6 +130,8 @@ contains
           call add(warnings, "W007", block%at("search_distance"), "search_distance = "// &
               to_text(block%number("search_distance")), &
               "small for the thickness; nodes may pass a tool before it is found")
+        case default
+          ! Other blocks have no such settings.
         end select
       end associate
     end do
@@ -320,8 +322,9 @@ contains
     stress = [c**2, s**2, 0.0_wp, 0.0_wp, 0.0_wp, sqrt2*s*c]
     call model%material(i)%laws%criterion%gradient(stress, value, normal)
     r_value = huge(1.0_wp)
-    if (abs(normal(3)) > tiny(1.0_wp)) &
-        r_value = (s**2*normal(1) + c**2*normal(2) - sqrt2*s*c*normal(6))/normal(3)
+    if (abs(normal(3)) > tiny(1.0_wp)) then
+      r_value = (s**2*normal(1) + c**2*normal(2) - sqrt2*s*c*normal(6))/normal(3)
+    end if
   end function r_value
 
   !> Warn of an unusual density.

@@ -100,8 +100,9 @@ contains
       case default
         text = ""
       end select
-      if (any(verdict%cause == [cause_strain_bound, cause_singular_tangent, cause_no_strain])) &
-          text = text//"; the flow stress is "//to_text(value(2), 4)//" MPa"
+      if (any(verdict%cause == [cause_strain_bound, cause_singular_tangent, cause_no_strain])) then
+        text = text//"; the flow stress is "//to_text(value(2), 4)//" MPa"
+      end if
     end associate
   end function text_of_cause
 

@@ -143,7 +143,7 @@ contains
 
     type(error_t), allocatable :: late
     integer(i8) :: n
-    real(wp) :: now, pause
+    real(wp) :: now, quiet
 
     if (self%failed) return
     n = len(text, i8)
@@ -155,9 +155,9 @@ contains
     self%buffer(self%used + 1:self%used + n) = text
     self%used = self%used + n
     now = wall_time()
-    pause = now - self%added
+    quiet = now - self%added
     self%added = now
-    if (pause <= longest_pause .and. now - self%flushed <= longest_wait) return
+    if (quiet <= longest_pause .and. now - self%flushed <= longest_wait) return
     call self%flush(late)
     if (allocated(late)) call move_alloc(late, error)
   end subroutine file_put

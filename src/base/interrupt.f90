@@ -20,7 +20,7 @@ module dd3_base_interrupt
   !> Handler that ignores a signal.
   integer(c_intptr_t), parameter :: ignore = 1
   !> Number of the signal received; 0 if there was none.
-  integer(c_int), volatile, save :: caught = 0
+  integer(c_int), volatile :: caught = 0
 
   interface
     !> signal(2).
@@ -54,8 +54,9 @@ contains
     type(c_funptr) :: previous
 
     previous = c_signal(number, c_funloc(catch_signal))
-    if (transfer(previous, ignore) == ignore) &
-        previous = c_signal(number, transfer(ignore, c_null_funptr))
+    if (transfer(previous, ignore) == ignore) then
+      previous = c_signal(number, transfer(ignore, c_null_funptr))
+    end if
   end subroutine watch_unless_ignored
 
   !> Whether a signal was received, by any rank; all of them must ask.

@@ -33,7 +33,7 @@ contains
       if (status /= 0) exit
       if (index(line, name) /= 1) cycle
       read (line(len(name) + 1:), *, iostat=status) bytes
-      bytes = 1024.0_wp*bytes
+      bytes = merge(1024.0_wp*bytes, 0.0_wp, status == 0)
       exit
     end do
     close (unit)

@@ -161,6 +161,8 @@ module dd3_input_case
     !> Young's modulus (MPa) and Poisson's ratio.
     real(wp) :: young = 0.0_wp, poisson = 0.0_wp
     type(law_spec_t) :: yield, hardening
+    !> Law of the modulus; without a name for a constant one.
+    type(law_spec_t) :: modulus
     !> t/mm3; 0 if not given.
     real(wp) :: density = 0.0_wp
     !> Size 0 without a back-stress.
@@ -223,6 +225,8 @@ module dd3_input_case
     character(len=:), allocatable :: set
     !> Whether x, y, z are fixed.
     logical :: fix(3) = .false.
+    !> Diameter of the locating pin that the support stands for, mm; 0 for none.
+    real(wp) :: pin = 0.0_wp
     type(block_t) :: source
   end type boundary_spec_t
 
@@ -330,6 +334,8 @@ module dd3_input_case
     real(wp) :: trial = 0.0_wp
     !> Whether all tools are released and supports are chosen where they are missing.
     logical :: unload = .false.
+    !> Whether the state at the end is kept for other runs.
+    logical :: keep = .false.
     !> Tools held, and tools that are withdrawn.
     type(tool_name_t), allocatable :: hold(:), release(:)
     !> Tools moved, and tools pressed.

@@ -33,8 +33,9 @@ contains
     do i = 1, size(case%material)
       ! With a mesh and without a normal the directions are checked in the model.
       if (case%material(i)%source%valid .and. (size(case%mesh) == 0 .or. &
-          case%material(i)%source%has("normal_direction"))) &
-          call check_material(case%material(i), errors)
+          case%material(i)%source%has("normal_direction"))) then
+        call check_material(case%material(i), errors)
+      end if
     end do
     do i = 1, size(case%start)
       if (case%start(i)%source%valid) call check_start(case%start(i), errors)
@@ -54,6 +55,8 @@ contains
         before = errors%count
         call check_output(case, case%deck%block(i), errors)
         if (errors%count == before) call check_travel(case, case%deck%block(i), errors)
+      case default
+        ! Other blocks are checked with their lists above and below.
       end select
     end do
     do i = 1, size(case%phase)

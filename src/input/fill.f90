@@ -238,8 +238,9 @@ contains
     drawbead%table = block%numbers("table")
     if (size(drawbead%table) > 0) return
     drawbead%table = [0.0_wp, 1.0_wp]
-    if (block%number("rise") > 0.0_wp) &
-        drawbead%table = [0.0_wp, 0.0_wp, block%number("rise"), 1.0_wp]
+    if (block%number("rise") > 0.0_wp) then
+      drawbead%table = [0.0_wp, 0.0_wp, block%number("rise"), 1.0_wp]
+    end if
   end subroutine fill_drawbead
 
   subroutine fill_boundary(boundary, block)
@@ -251,6 +252,7 @@ contains
     boundary%name = block%name
     boundary%source = block
     boundary%set = block%word("set")
+    if (block%has("pin")) boundary%pin = block%number("pin")
     if (.not. block%has("fix")) return
     associate (entry => block%entry(block%find("fix")))
       do i = 1, size(entry%value)
@@ -296,6 +298,8 @@ contains
           history%moment = .true.
         case ("draw_in")
           history%draw_in = .true.
+        case default
+          ! Refused with the values of the key.
         end select
       end do
     end associate

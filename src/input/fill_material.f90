@@ -33,6 +33,10 @@ contains
     if (block%has("hardening")) then
       call fill_law(material%hardening, block%entry(block%find("hardening")), block%folder)
     end if
+    material%modulus%name = ""
+    if (block%has("modulus")) then
+      call fill_law(material%modulus, block%entry(block%find("modulus")), block%folder)
+    end if
     allocate (material%backstress(0))
     do i = 1, block%n_entry
       if (block%entry(i)%key /= "backstress" .or. .not. block%entry(i)%valid) cycle

@@ -41,6 +41,7 @@ contains
     phase%control = tool_position(case, block%word("control"))
     if (block%has("trial")) phase%trial = block%number("trial")
     phase%unload = block%number("unload") > 0.5_wp
+    phase%keep = block%number("keep") > 0.5_wp
     call fill_entries(phase, case, block)
     phase%has_gravity = block%has("gravity")
     if (phase%has_gravity) phase%gravity = block%numbers("gravity")

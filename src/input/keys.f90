@@ -139,6 +139,8 @@ contains
       row("hardening", kind_law, "", "", "hardening law and its parameters"), &
       row("backstress", kind_law, "", "none", &
           "back-stress law and its parameters, or none; several are summed", repeatable=.true.), &
+      row("modulus", kind_law, "", "none", &
+          "law of Young's modulus over the plastic strain and its parameters; none: constant"), &
       row("density", kind_real, "t/mm3", "-", "density, for gravity; 7.85e-9 for steel", &
           lower=zero, lower_open=.true.), &
       row("rolling_direction", kind_reals, "", "1 0 0", "rolling direction in the initial sheet", &
@@ -208,7 +210,10 @@ contains
 
     key = [ &
       row("set", kind_name, "", "", "node set", form="set"), &
-      row("fix", kind_names, "", "", "fixed directions", count=0, choices="x y z")]
+      row("fix", kind_names, "", "", "fixed directions", count=0, choices="x y z"), &
+      row("pin", kind_real, "mm", "-", "diameter of a locating pin in a hole of the sheet, of "// &
+          "which the support is a model: its force and bearing pressure are told", lower=zero, &
+          lower_open=.true.)]
   end function boundary_keys
 
   function limits_keys() result(key)
@@ -352,6 +357,8 @@ contains
           "pairs to 1; default: 1 1", count=0), &
       row("unload", kind_logical, "", "-", "on: springback. All tools are withdrawn at the "// &
           "same time, with contact; supports are chosen that stop the rigid motions left free"), &
+      row("keep", kind_logical, "", "-", "on: the state at the end is kept in the folder of "// &
+          "the phase's name in that of the results, for from of *START"), &
       row("until", kind_other, "mm or N", "-", &
           "ends the phase early: displacement or force of a tool in its direction", &
           form="displacement|force tool number"), &

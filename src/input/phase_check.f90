@@ -120,9 +120,10 @@ contains
           "move for the path of a released tool", code="E124")
     end do
     do i = 1, size(phase%move)
-      if (withdrawn(phase%move(i)%tool) .and. size(phase%move_table) > 0) &
-          call errors%push_input(phase%move(i)%at, "move_table does not act on a tool that is "// &
+      if (withdrawn(phase%move(i)%tool) .and. size(phase%move_table) > 0) then
+        call errors%push_input(phase%move(i)%at, "move_table does not act on a tool that is "// &
           released//" in the same phase: it is withdrawn at a constant rate", code="E124")
+      end if
     end do
   end subroutine check_withdrawn
 
@@ -329,8 +330,8 @@ contains
     end do
   end subroutine check_turns
 
-  !> Check that the tools that tilt are pressed, have no prescribed turn, carry no draw-bead and have
-  !> compliant contact.
+  !> Check that the tools that tilt are pressed, have no prescribed turn, carry no draw-bead and
+  !> have compliant contact.
   subroutine check_tilts(case, phase, is_pressed, tilting, errors)
     type(case_t), intent(in) :: case
     type(phase_spec_t), intent(in) :: phase
@@ -349,8 +350,8 @@ contains
           case%tool(phase%tilt(i)%tool)%source%called()//"'")
         if (named(tilt%tool)) call errors%push_input(tilt%at, name//" is given two pivots in "// &
             "this phase", "one pivot for each tool", code="E122")
-        if (.not. is_pressed(tilt%tool)) call errors%push_input(tilt%at, name//" is not pressed "// &
-            "in this phase", "press beside tilt", code="E144")
+        if (.not. is_pressed(tilt%tool)) call errors%push_input(tilt%at, name//" is not "// &
+            "pressed in this phase", "press beside tilt", code="E144")
         if (any(case%drawbead%tool == tilt%tool)) call errors%push_input(tilt%at, name// &
             " carries a draw-bead, which cannot tilt", "a draw-bead without this tool", code="E144")
         if (tilt%stiffness < 0.0_wp) call errors%push_input(tilt%at, "the stiffness against "// &
@@ -406,9 +407,10 @@ contains
           "one load for each set", code="E122")
     end do
     do i = 2, size(phase%pressure)
-      if (any([(phase%pressure(j)%set == phase%pressure(i)%set, j=1, i - 1)])) &
-          call errors%push_input(phase%pressure(i)%at, "'"//phase%pressure(i)%set// &
+      if (any([(phase%pressure(j)%set == phase%pressure(i)%set, j=1, i - 1)])) then
+        call errors%push_input(phase%pressure(i)%at, "'"//phase%pressure(i)%set// &
           "' is given two pressures in this phase", "one pressure for each set", code="E122")
+      end if
     end do
   end subroutine check_loads
 

@@ -104,9 +104,10 @@ contains
 
     previous = 0.0_wp
     do i = 1, size(x) - 1, 2
-      if (x(i) - previous < least_progress) &
-          call errors%push_input(value(i)%at, "the progress does not increase here", form, &
+      if (x(i) - previous < least_progress) then
+        call errors%push_input(value(i)%at, "the progress does not increase here", form, &
               code="E134")
+      end if
       previous = x(i)
     end do
     if (abs(previous - 1.0_wp) > 0.0_wp) call errors%push_input(value(size(x) - 1)%at, &

@@ -141,6 +141,8 @@ contains
           select case (form(k))
           case ("set", "tool", "material")
             call check_reference(deck, i, entry%value(k), trim(form(k)), known, errors)
+          case default
+            ! Not a name of a block.
           end select
         end do
       end if

@@ -127,6 +127,7 @@ contains
       if (length <= 0 .and. status == 0) call fatal_error(error, &
           "a pipe or a device, expected a regular file")
     end if
+    ! allow(C181)
     close (unit, iostat=status)
   end subroutine read_content
 

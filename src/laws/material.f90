@@ -1,11 +1,13 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> A material from its specification in the input.
 module dd3_laws_material
+  use dd3_base_kinds, only : wp
   use dd3_base_digest, only : digest_t
   use dd3_base_error, only : error_list_t
+  use dd3_base_text, only : to_text
   use dd3_input_case, only : material_spec_t
   use dd3_laws_choice, only : choose_checked
-  use dd3_material_check, only : law_backstress, law_hardening, law_yield
+  use dd3_material_check, only : law_backstress, law_hardening, law_modulus, law_yield
   use dd3_material_description, only : law_choice_t
   use dd3_material_material, only : material_t, new_material
   implicit none
@@ -23,7 +25,7 @@ contains
     !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
 
-    type(law_choice_t) :: yield, hardening
+    type(law_choice_t) :: yield, hardening, modulus
     type(law_choice_t), allocatable :: backstress(:)
     type(digest_t) :: digest
     integer :: found, i
@@ -37,17 +39,48 @@ contains
     do i = 1, size(backstress)
       call choose_checked(law_backstress, spec%backstress(i), backstress(i), errors)
     end do
+    if (spec%source%has("modulus")) call choose_checked(law_modulus, spec%modulus, modulus, errors)
     if (errors%count > found .or. .not. spec%source%valid) return
     if (yield%name == "" .or. hardening%name == "") return
-    call new_material(material, spec%young, spec%poisson, yield, hardening, backstress)
+    call new_material(material, spec%young, spec%poisson, yield, hardening, backstress, &
+        modulus)
+    call check_modulus(material, spec, errors)
+    if (errors%count > found) return
     call digest%add([spec%young, spec%poisson])
     call add_law(digest, yield)
     call add_law(digest, hardening)
     do i = 1, size(backstress)
       call add_law(digest, backstress(i))
     end do
+    if (material%laws%softens) call add_law(digest, modulus)
     check_sum = digest%value()
   end subroutine make_material
+
+  !> Require that a law of the modulus begins at `young` and does not end above it.
+  subroutine check_modulus(material, spec, errors)
+    type(material_t), intent(in) :: material
+    type(material_spec_t), intent(in) :: spec
+    !> Errors found are added.
+    type(error_list_t), intent(inout) :: errors
+
+    !> Plastic strain at which a law has saturated; relative difference of equal moduli.
+    real(wp), parameter :: large = 1.0e6_wp, tolerance = 1.0e-6_wp
+    real(wp) :: first, last
+
+    if (.not. material%laws%softens) return
+    associate (law => material%laws%modulus%law)
+      first = law%young_at(spec%young, 0.0_wp)
+      last = law%young_at(spec%young, large)
+    end associate
+    if (abs(first - spec%young) > tolerance*spec%young) then
+      call errors%push_input(spec%modulus%at, "the modulus is "//to_text(first)// &
+          " MPa at zero plastic strain", "young = "//to_text(spec%young), code="E149")
+    else if (last > spec%young*(1 + tolerance)) then
+      call errors%push_input(spec%modulus%at, "the modulus rises from "//to_text(spec%young)// &
+          " to "//to_text(last)//" MPa", "a modulus that falls with the plastic strain", &
+          code="E149")
+    end if
+  end subroutine check_modulus
 
   !> Add a law and its values to a check sum.
   subroutine add_law(digest, law)

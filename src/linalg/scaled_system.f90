@@ -15,8 +15,8 @@ module dd3_linalg_scaled_system
 
   !> Renumbered and scaled copy of a linear system.
   type :: scaled_system_t
-    !> Copy: its block row i is the original's block row `order(i)`. It may have a part of the rows, and
-    !> has the same columns then: the unknowns that are left out are zero.
+    !> Copy: its block row i is the original's block row `order(i)`. It may have a part of the rows,
+    !> and has the same columns then: the unknowns that are left out are zero.
     type(block_matrix_t) :: matrix
     !> Original number of each block row of the copy.
     integer, allocatable :: order(:)

@@ -160,12 +160,15 @@ contains
     small = max(0.25_wp*epsilon(1.0_wp)*(sum(abs(values)) + abs(x) + abs(y) + abs(z)), floor)
     do sweep = 1, max_sweeps
       if (abs(x) + abs(y) + abs(z) <= small) exit
-      if (abs(z) > 0.1_wp*small) &
-          call rotate(values(1), values(2), z, y, x, vectors(:, 1), vectors(:, 2))
-      if (abs(y) > 0.1_wp*small) &
-          call rotate(values(1), values(3), y, z, x, vectors(:, 1), vectors(:, 3))
-      if (abs(x) > 0.1_wp*small) &
-          call rotate(values(2), values(3), x, z, y, vectors(:, 2), vectors(:, 3))
+      if (abs(z) > 0.1_wp*small) then
+        call rotate(values(1), values(2), z, y, x, vectors(:, 1), vectors(:, 2))
+      end if
+      if (abs(y) > 0.1_wp*small) then
+        call rotate(values(1), values(3), y, z, x, vectors(:, 1), vectors(:, 3))
+      end if
+      if (abs(x) > 0.1_wp*small) then
+        call rotate(values(2), values(3), x, z, y, vectors(:, 2), vectors(:, 3))
+      end if
     end do
   end subroutine symmetric_eigen
 

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Common access to the three registries: the descriptions of the laws and the check of the values
+!> Common access to the four registries: the descriptions of the laws and the check of the values
 !> given to one.
 module dd3_material_check
   use dd3_base_parameter, only : parameter_t, law_value_t
@@ -8,16 +8,19 @@ module dd3_material_check
   use dd3_material_description, only : description_t, problem_t
   use dd3_material_hardening_law, only : hardening_slot_t
   use dd3_material_hardening_registry, only : describe_hardenings, find_hardening
+  use dd3_material_modulus_law, only : modulus_slot_t
+  use dd3_material_modulus_registry, only : describe_moduli, find_modulus
   use dd3_material_yield_criterion, only : yield_slot_t
   use dd3_material_yield_convexity, only : check_convexity
   use dd3_material_yield_registry, only : describe_criteria, find_criterion
   implicit none
   private
-  public :: law_yield, law_hardening, law_backstress
+  public :: law_yield, law_hardening, law_backstress, law_modulus
   public :: describe_laws, known_laws, law_rows, check_together
 
   !> The kinds of laws.
-  integer, parameter :: law_yield = 1, law_hardening = 2, law_backstress = 3
+  integer, parameter :: law_yield = 1, law_hardening = 2, law_backstress = 3, &
+      law_modulus = 4
 
 contains
 
@@ -32,8 +35,10 @@ contains
       call describe_criteria(descriptions)
     case (law_hardening)
       call describe_hardenings(descriptions)
-    case default
+    case (law_backstress)
       call describe_backstresses(descriptions)
+    case default
+      call describe_moduli(descriptions)
     end select
   end subroutine describe_laws
 
@@ -88,6 +93,7 @@ contains
     type(yield_slot_t) :: criterion
     type(hardening_slot_t) :: hardening
     type(backstress_slot_t) :: backstress
+    type(modulus_slot_t) :: modulus
     integer :: before
 
     before = 0
@@ -104,9 +110,12 @@ contains
     case (law_hardening)
       call find_hardening(name, hardening)
       call hardening%law%check(values, problems)
-    case default
+    case (law_backstress)
       call find_backstress(name, backstress)
       call backstress%law%check(values, problems)
+    case default
+      call find_modulus(name, modulus)
+      call modulus%law%check(values, problems)
     end select
     problems = problems(before + 1:)
   end subroutine check_together

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> The laws of a material: elasticity, a criterion, a hardening law and any number of back-stresses,
-!> which add up. The internal variables of a point are the equivalent plastic strain, six components
-!> of each back-stress, then those of the hardening law.
+!> The laws of a material: elasticity, a criterion, a hardening law, any number of back-stresses,
+!> which add up, and possibly a law of Young's modulus. The internal variables of a point are the
+!> equivalent plastic strain, six components of each back-stress, then those of the hardening law.
 module dd3_material_composition
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
@@ -10,11 +10,13 @@ module dd3_material_composition
   use dd3_material_elasticity, only : elasticity_t
   use dd3_material_flow, only : flow_direction_t, flow_response_t, back_response_t
   use dd3_material_hardening_law, only : hardening_t
+  use dd3_material_modulus_law, only : modulus_slot_t
   use dd3_material_yield_criterion, only : yield_criterion_t
   implicit none
   private
   public :: composition_t, complete, describe_internal_variables
-  public :: back_stress_of, flow_response_of, add_back_stresses, evolve_internal_variables
+  public :: stiffness_ratio, back_stress_of, flow_response_of, add_back_stresses
+  public :: evolve_internal_variables
 
   !> The laws of a material.
   type :: composition_t
@@ -22,6 +24,8 @@ module dd3_material_composition
     class(yield_criterion_t), allocatable :: criterion
     class(hardening_t), allocatable :: hardening
     type(backstress_slot_t), allocatable :: backstress(:)
+    !> Not allocated for a constant modulus.
+    type(modulus_slot_t) :: modulus
     !> Number of internal variables of a point.
     integer :: n_internal = 1
     !> Indices of the hardening law's first and last own internal variable.
@@ -31,6 +35,8 @@ module dd3_material_composition
     !> Whether neither back-stress nor flow stress depends on the direction of flow: the matrix of
     !> the return mapping is then symmetric.
     logical :: symmetric = .true.
+    !> Whether Young's modulus falls with the plastic strain.
+    logical :: softens = .false.
   end type composition_t
 
 contains
@@ -43,6 +49,7 @@ contains
     self%last = self%first + self%hardening%n_internal - 1
     self%n_internal = self%last
     self%kinematic = size(self%backstress) > 0 .or. self%hardening%owns_back_stress
+    self%softens = allocated(self%modulus%law)
     self%symmetric = .not. (self%kinematic .or. self%hardening%path_dependent)
   end subroutine complete
 
@@ -97,6 +104,18 @@ contains
     no_direction%gradient = 0.0_wp
     no_direction%second = 0.0_wp
   end function no_direction
+
+  !> Return Young's modulus of a state over that of the undeformed material, which scales the whole
+  !> elastic stiffness.
+  pure real(wp) function stiffness_ratio(self, plastic_strain)
+    type(composition_t), intent(in) :: self
+    !> Equivalent plastic strain.
+    real(wp), intent(in) :: plastic_strain
+
+    stiffness_ratio = 1.0_wp
+    if (self%softens) stiffness_ratio = self%modulus%law%young_at(self%elasticity%young, &
+        plastic_strain)/self%elasticity%young
+  end function stiffness_ratio
 
   !> Return the sum of the back-stresses of a state, MPa.
   pure function back_stress_of(self, internal_variables) result(back_stress)

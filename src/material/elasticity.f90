@@ -8,6 +8,8 @@ module dd3_material_elasticity
   public :: elasticity_t, new_elasticity, elastic_stress, elastic_strain
 
   type :: elasticity_t
+    !> Young's modulus, MPa.
+    real(wp) :: young = 0.0_wp
     !> Shear modulus G, MPa; Lamé's first constant, MPa.
     real(wp) :: shear = 0.0_wp, lame = 0.0_wp
     !> -nu/(1 + nu), the factor of the trace of the stress in 2G times a normal strain.
@@ -27,6 +29,7 @@ contains
     real(wp) :: normal
     integer :: i, j
 
+    self%young = young
     self%shear = young/(2*(1 + poisson))
     self%lame = young*poisson/((1 + poisson)*(1 - 2*poisson))
     self%trace_factor = -poisson/(1 + poisson)

@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> A material: elasticity, yield criterion, hardening law and back-stresses, evaluated at a point.
+!> A material: elasticity, yield criterion, hardening law, back-stresses and possibly a law of the
+!> modulus, evaluated at a point.
 !> All tensors are Kelvin vectors in the orthotropy axes.
 module dd3_material_material
   use dd3_base_kinds, only : wp
@@ -7,12 +8,14 @@ module dd3_material_material
       verdict_impossible, cause_large_strain, cause_none, cause_not_finite, cause_return_mapping
   use dd3_material_backstress_registry, only : find_backstress
   use dd3_material_composition, only : composition_t, add_back_stresses, back_stress_of, complete, &
-      flow_response_of, describe_composition => describe_internal_variables
+      stiffness_ratio, flow_response_of, describe_composition => describe_internal_variables
   use dd3_material_description, only : internal_variable_t, law_choice_t
-  use dd3_material_elasticity, only : elastic_stress, new_elasticity
+  use dd3_material_elasticity, only : elastic_stress, new_elasticity, &
+      strain_of => elastic_strain
   use dd3_material_flow, only : flow_direction_t, flow_response_t, back_response_t
   use dd3_material_hardening_law, only : hardening_slot_t
   use dd3_material_hardening_registry, only : find_hardening
+  use dd3_material_modulus_registry, only : find_modulus
   use dd3_material_return_mapping, only : step_t
   use dd3_material_update, only : substeps_t, integrate, differentiate, all_finite
   use dd3_material_yield_criterion, only : yield_slot_t
@@ -38,6 +41,7 @@ module dd3_material_material
     procedure :: equivalent_stress
     procedure :: flow_stress
     procedure :: back_stress
+    procedure :: elastic_strain
     procedure :: describe_internal_variables
   end type material_t
 
@@ -49,13 +53,15 @@ module dd3_material_material
 contains
 
   !> Initialise a material with laws whose parameters have been checked.
-  subroutine new_material(self, young, poisson, criterion, hardening, backstress)
+  subroutine new_material(self, young, poisson, criterion, hardening, backstress, modulus)
     type(material_t), intent(out) :: self
     !> Young's modulus, MPa; Poisson's ratio, above -1 and below 1/2.
     real(wp), intent(in) :: young, poisson
     type(law_choice_t), intent(in) :: criterion, hardening
     !> May be of size zero.
     type(law_choice_t), intent(in) :: backstress(:)
+    !> Law of the modulus; absent or with a name that is none of the registry for a constant one.
+    type(law_choice_t), intent(in), optional :: modulus
 
     type(yield_slot_t) :: found_criterion
     type(hardening_slot_t) :: found_hardening
@@ -74,6 +80,10 @@ contains
       call find_backstress(backstress(i)%name, self%laws%backstress(i))
       call self%laws%backstress(i)%law%set(backstress(i)%values)
     end do
+    if (present(modulus)) then
+      call find_modulus(modulus%name, self%laws%modulus)
+      if (allocated(self%laws%modulus%law)) call self%laws%modulus%law%set(modulus%values)
+    end if
     call complete(self%laws)
     self%n_internal = self%laws%n_internal
   end subroutine new_material
@@ -150,16 +160,17 @@ contains
     type(flow_direction_t) :: direction
     type(flow_response_t) :: flow
     type(back_response_t) :: back
-    real(wp) :: rate(6), modulus
+    real(wp) :: rate(6), modulus, ratio
     integer :: j
 
-    tangent = self%laws%elasticity%stiffness
+    ratio = stiffness_ratio(self%laws, internal_variables(1))
+    tangent = ratio*self%laws%elasticity%stiffness
     if (.not. plastic) return
     call self%laws%criterion%second_derivative(stress - self%back_stress(internal_variables), &
         direction)
     call self%laws%hardening%flow_stress(internal_variables(1), &
         internal_variables(self%laws%first:self%laws%last), 0.0_wp, direction, flow)
-    rate = elastic_stress(self%laws%elasticity, direction%gradient)
+    rate = ratio*elastic_stress(self%laws%elasticity, direction%gradient)
     modulus = dot_product(direction%gradient, rate) + flow%slope
     if (self%laws%kinematic) then
       call add_back_stresses(self%laws, internal_variables, 0.0_wp, direction, back)
@@ -212,6 +223,16 @@ contains
 
     back_stress = back_stress_of(self%laws, internal_variables)
   end function back_stress
+
+  !> Return the elastic strain of a state.
+  pure function elastic_strain(self, stress, plastic_strain) result(strain)
+    class(material_t), intent(in) :: self
+    !> Stress, MPa; equivalent plastic strain.
+    real(wp), intent(in) :: stress(6), plastic_strain
+    real(wp) :: strain(6)
+
+    strain = strain_of(self%laws%elasticity, stress)/stiffness_ratio(self%laws, plastic_strain)
+  end function elastic_strain
 
   !> Describe the internal variables of a point in their order, the equivalent plastic strain first.
   subroutine describe_internal_variables(self, rows)

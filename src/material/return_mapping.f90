@@ -6,14 +6,16 @@
 !>     C^-1 (xi + X(xi, dp) - T_trial) + dp V(xi) = 0,     sb(xi) - Y(xi, dp) = 0
 !>
 !> solved by a damped Newton method (J. C. Simo and R. L. Taylor, 1985, 1986, for the method and its
-!> consistent tangent). The 6x6 block of the matrix, positive definite for convex criteria, is
-!> inverted without pivoting (with, if that fails), and the last unknown eliminated. The inverse of
-!> the last iteration gives the last correction and the tangent.
+!> consistent tangent). C is the elastic stiffness of the state at the start of the step; where
+!> Young's modulus falls with the plastic strain, no term of its rate is in the stress. The 6x6
+!> block of the matrix, positive definite for convex criteria, is inverted without pivoting (with,
+!> if that fails), and the last unknown eliminated. The inverse of the last iteration gives the last
+!> correction and the tangent.
 module dd3_material_return_mapping
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : solve_small
   use dd3_material_composition, only : composition_t, back_stress_of, flow_response_of, &
-      add_back_stresses
+      add_back_stresses, stiffness_ratio
   use dd3_material_elasticity, only : elastic_strain, elastic_stress
   use dd3_material_flow, only : flow_direction_t, flow_response_t, back_response_t
   implicit none
@@ -49,6 +51,8 @@ module dd3_material_return_mapping
     integer :: iterations
     !> Norm of the residual; ratio of equivalent trial stress to flow stress.
     real(wp) :: norm, overstress
+    !> Elastic stiffness over that of the undeformed material, and its inverse.
+    real(wp) :: stiffness, softness
     !> Trial stress and stress at the end, MPa.
     real(wp) :: trial(6), stress(6)
     !> Plastic increment.
@@ -76,7 +80,9 @@ contains
 
     real(wp) :: effective(6), value
 
-    step%trial = stress + elastic_stress(laws%elasticity, strain)
+    step%stiffness = stiffness_ratio(laws, start(1))
+    step%softness = 1/step%stiffness
+    step%trial = stress + step%stiffness*elastic_stress(laws%elasticity, strain)
     effective = step%trial
     if (laws%kinematic) effective = effective - back_stress_of(laws, start)
     value = laws%criterion%value(effective)
@@ -109,7 +115,7 @@ contains
     real(wp) :: value, normal(6), flow(6), modulus
 
     call laws%criterion%gradient(effective, value, normal)
-    flow = elastic_stress(laws%elasticity, normal)
+    flow = step%stiffness*elastic_stress(laws%elasticity, normal)
     modulus = dot_product(normal, flow) + max(step%flow%slope, 0.0_wp)
     step%increment = (value - step%flow%value)/modulus
     step%direction%stress = effective - step%increment*flow
@@ -126,7 +132,7 @@ contains
 
     real(wp) :: modulus, mean
 
-    modulus = 3*laws%elasticity%shear
+    modulus = 3*step%stiffness*laws%elasticity%shear
     step%increment = (value - step%flow%value)/(modulus + max(step%flow%slope, 0.0_wp))
     mean = (effective(1) + effective(2) + effective(3))/3
     step%direction%stress = (1 - modulus*step%increment/value)*effective
@@ -182,7 +188,7 @@ contains
       call add_back_stresses(laws, start, increment, step%direction, step%back)
       step%stress = stress + step%back%value
     end if
-    step%residual = elastic_strain(laws%elasticity, step%stress - step%trial) &
+    step%residual = step%softness*elastic_strain(laws%elasticity, step%stress - step%trial) &
         + increment*step%direction%gradient
     step%excess = step%direction%equivalent - step%flow%value
     step%norm = sqrt(dot_product(step%residual, step%residual)/strain_weight**2 &
@@ -274,15 +280,17 @@ contains
     integer :: j
 
     matrix = laws%elasticity%compliance + step%increment*step%direction%second
+    if (laws%softens) matrix = matrix + (step%softness - 1)*laws%elasticity%compliance
     column = step%direction%gradient
     row = step%direction%gradient
     if (laws%symmetric) return
     row = row - step%flow%gradient
     if (.not. laws%kinematic) return
     do j = 1, 6
-      matrix(:, j) = matrix(:, j) + elastic_strain(laws%elasticity, step%back%gradient(:, j))
+      matrix(:, j) = matrix(:, j) &
+          + step%softness*elastic_strain(laws%elasticity, step%back%gradient(:, j))
     end do
-    column = column + elastic_strain(laws%elasticity, step%back%slope)
+    column = column + step%softness*elastic_strain(laws%elasticity, step%back%slope)
   end subroutine fill_matrix
 
   !> Invert a positive definite 6x6 matrix by Gauss-Jordan sweeps without pivoting. The unit vectors

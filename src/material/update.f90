@@ -13,7 +13,7 @@ module dd3_material_update
   type :: substeps_t
     integer :: count = 1
     !> Derivatives in the whole strain of the stress, MPa, and of the plastic strain, carried from
-    !> substep to substep if the state is stress and plastic strain only.
+    !> substep to substep; see `carries_derivatives`.
     real(wp) :: stress_slope(6, 6), plastic_slope(6)
   end type substeps_t
 
@@ -69,19 +69,20 @@ contains
       substep_stress = step%stress
       if (step%plastic) call evolve_internal_variables(laws, substep_start, step%increment, &
           step%direction, internal_variables)
-      if (stress_and_plastic_strain(laws)) call chain(laws, step, substeps)
+      if (carries_derivatives(laws)) call chain(laws, step, substeps)
     end do
   end subroutine integrate_substeps
 
-  !> Return whether the state is stress and plastic strain only.
-  pure logical function stress_and_plastic_strain(laws)
+  !> Return whether the derivatives are carried from substep to substep: the state is stress and
+  !> plastic strain only, and the elastic stiffness does not depend on it.
+  pure logical function carries_derivatives(laws)
     type(composition_t), intent(in) :: laws
 
-    stress_and_plastic_strain = laws%symmetric .and. laws%n_internal == 1
-  end function stress_and_plastic_strain
+    carries_derivatives = laws%symmetric .and. laws%n_internal == 1 .and. .not. laws%softens
+  end function carries_derivatives
 
   !> Evaluate the consistent tangent of a strain increment that has been integrated. Over several
-  !> substeps of a state beyond stress and plastic strain, by central differences.
+  !> substeps whose derivatives are not carried, by central differences.
   pure subroutine differentiate(laws, substeps, stress, start, strain, step, tangent)
     type(composition_t), intent(in) :: laws
     type(substeps_t), intent(inout) :: substeps
@@ -96,7 +97,7 @@ contains
 
     if (substeps%count == 1) then
       call step_tangent(laws, step, tangent)
-    else if (stress_and_plastic_strain(laws)) then
+    else if (carries_derivatives(laws)) then
       tangent = substeps%stress_slope
     else
       call central_differences(laws, substeps, stress, start, strain, tangent, step%converged)
@@ -138,7 +139,7 @@ contains
     integer :: j
 
     if (.not. step%plastic) then
-      tangent = laws%elasticity%stiffness
+      tangent = step%stiffness*laws%elasticity%stiffness
       return
     end if
     tangent = step%block

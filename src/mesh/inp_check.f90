@@ -48,8 +48,9 @@ contains
         if (defect(e) /= kind) cycle
         n = n + 1
         others = ""
-        if (n == most_named .and. count(defect == kind) > n) &
-            others = "; the same holds for "//to_text(count(defect == kind) - n)//" others"
+        if (n == most_named .and. count(defect == kind) > n) then
+          others = "; the same holds for "//to_text(count(defect == kind) - n)//" others"
+        end if
         call report_shape(inp, corner(:, e), e, kind, others)
         if (n == most_named) exit
       end do

@@ -117,8 +117,9 @@ contains
         associate (ends => node(edge_ends(:, k), e))
           i = first(minval(ends))
           do while (i > 0)
-            if (maxval(ends) == maxval(bound(2:, i)) .and. all(node(:, e) /= bound(1, i))) &
-                has_edge(i) = .true.
+            if (maxval(ends) == maxval(bound(2:, i)) .and. all(node(:, e) /= bound(1, i))) then
+              has_edge(i) = .true.
+            end if
             i = next(i)
           end do
         end associate

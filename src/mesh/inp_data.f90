@@ -126,8 +126,9 @@ contains
     do i = 1, fields%n
       call read_label(self, at, text, fields, i, form, label)
       if (at%n_read == 0) self%element_label(self%n_element) = label
-      if (at%n_read > 0 .and. at%n_read <= self%n_element_node) &
-          self%corner(at%n_read, self%n_element) = label
+      if (at%n_read > 0 .and. at%n_read <= self%n_element_node) then
+        self%corner(at%n_read, self%n_element) = label
+      end if
       at%n_read = at%n_read + 1
     end do
     if (fields%open .and. at%n_read <= self%n_element_node) return

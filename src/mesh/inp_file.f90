@@ -224,9 +224,10 @@ contains
     integer :: i
 
     call take_name(self, at, word, "type", i)
-    if (i == 0 .and. all(word%name(2:word%n) /= "type")) &
-        call self%report(at%number, "the type of the elements is missing", &
+    if (i == 0 .and. all(word%name(2:word%n) /= "type")) then
+      call self%report(at%number, "the type of the elements is missing", &
         "*ELEMENT, TYPE="//join(inp_type_names, " or "))
+    end if
     if (i == 0) return
     name = upper_case(text(word%first(i):word%last(i)))
     if (nodes_of_type(name) == 0) then

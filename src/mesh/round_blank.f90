@@ -361,6 +361,8 @@ contains
         member(1:, :) = .false.
       case ("z_max")
         member(:ubound(number, 1) - 1, :) = .false.
+      case default
+        ! All nodes.
       end select
       set%name = trim(name(i))
       set%node = pack(number, member)

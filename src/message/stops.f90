@@ -91,8 +91,8 @@ contains
           "The iteration does not reach the tolerance, most often because the sheet is hardly "// &
           "held.", "`method = umfpack` in `*SOLVER`; supports that stop rigid motion."), &
       row("E235", "factors that cannot be written", &
-          "With `factors = disk` MUMPS keeps its factors in the folder of the results; its disk "// &
-          "is full.", "A folder on a larger disk; `factors = memory` in `*SOLVER`.")]
+          "With `factors = disk` MUMPS keeps its factors in the folder of the results; its "// &
+          "disk is full.", "A folder on a larger disk; `factors = memory` in `*SOLVER`.")]
   end function in_solver
 
   !> Return the failures of the contact and of the iteration.

@@ -73,9 +73,9 @@ contains
           "It lies outside a tenth to ten times that of the earth: most often another unit.", &
           "`gravity` in mm/s2: 9810 on the earth."), &
       row("W024", "support of a single column", &
-          "A direction is held at nodes of one column through the thickness only, and tools are "// &
-          "withdrawn: the column cannot turn with the sheet.", "One node of the column in the "// &
-          "set, or a row of columns, such as a plane of symmetry.")]
+          "A direction is held at nodes of one column through the thickness only, and tools "// &
+          "are withdrawn: the column cannot turn with the sheet.", "One node of the column in "// &
+          "the set, or a row of columns, such as a plane of symmetry.")]
   end function input_warnings
 
   !> Return the warnings during a run.
@@ -116,7 +116,8 @@ contains
           "it "// &
           "passed between the nodes."), &
       row("W109", "tool between the nodes of the sheet", &
-          "Contact holds at its points: a tool with a small radius enters the faces between them.", &
+          "Contact holds at its points: a tool with a small radius enters the faces "// &
+          "between them.", &
           "Elements of the length that the message gives, in a run with refinement by the "// &
           "`adaptive` that it gives; `points` in `*CONTACT`."), &
       row("W110", "sheet beyond an open edge of a tool", &
@@ -146,10 +147,10 @@ contains
           "Compare with tools withdrawn in another order by `move`; a smaller `trial`."), &
       row("W117", "elements divided too late", &
           "An increment was made again on finer meshes as often as allowed and still bends the "// &
-          "sheet by more than 1.3 times `adaptive_angle` over elements that could be divided. It "// &
-          "is accepted, and they are divided before the next one: what they were too long for "// &
-          "stays in their stresses.", "Smaller increments (`trial`, `rotation` in `*LIMITS`), or "// &
-          "shorter elements at the start."), &
+          "sheet by more than 1.3 times `adaptive_angle` over elements that could be divided. "// &
+          "It is accepted, and they are divided before the next one: what they were too long "// &
+          "for stays in their stresses.", "Smaller increments (`trial`, `rotation` in "// &
+          "`*LIMITS`), or shorter elements at the start."), &
       row("W118", "elements that are not divided further", &
           "The sheet is bent by more than 1.5 times `adaptive_angle` over elements of the "// &
           "highest level, or of the least length, at the end of the phase. Where a tool enters "// &
@@ -170,7 +171,17 @@ contains
           "of the largest force on a tool at the end of the phase, and more than the weight of "// &
           "the sheet: it shapes the sheet, which it should only hold in its place.", &
           "Supports at other nodes or in fewer directions; none where tools and friction hold "// &
-          "the sheet.")]
+          "the sheet. `pin`, if it is a locating pin."), &
+      row("W122", "pin that widens its hole", &
+          "The mean bearing pressure of a locating pin, its force over diameter and thickness, "// &
+          "exceeds the yield stress of the sheet there in some increment of the phase.", &
+          "A pad with more force or friction, larger pins, or more of them."), &
+      row("W123", "sheet that has necked", &
+          "At the end of the run, or where it stops, the sheet is thinned by more than 40 %: "// &
+          "above the forming limits of sheets in plane strain. The strains concentrate within "// &
+          "the length of an element, so that the thinning depends on the mesh.", &
+          "Larger radii, less restraint and friction, a smaller drawing ratio; for the limit of "// &
+          "the material itself `dd3 report`.")]
   end function run_warnings
 
   !> Return the notes.
@@ -197,7 +208,10 @@ contains
           "The condition of its early end holds at its start.", "Check `until` of the phase."), &
       row("N107", "sheet that is formed to the tools", &
           "At the end of its path the punch is within 0.2 thicknesses of the place where it "// &
-          "would pinch the sheet, which lies on the punch or the tool across.", "None.")]
+          "would pinch the sheet, which lies on the punch or the tool across.", "None."), &
+      row("N108", "force of a locating pin", &
+          "The largest force on a support with `pin` in the phase, and its mean bearing "// &
+          "pressure, which is below the yield stress of the sheet.", "None.")]
   end function notes
 
 end module dd3_message_warnings

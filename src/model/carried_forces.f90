@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Nodal forces that follow the sections of the sheet: each turns as the fibre through the thickness
 !> at its node does, by the smallest rotation, so that a couple on a section stays one while the
-!> section turns. Their stiffness is unsymmetric. With v = n0 x n and c = n0 . n for the unit vectors
-!> of the fibre before and after, R = c I + [v] + v v^T/(1 + c).
+!> section turns. Their stiffness is unsymmetric. With v = n0 x n and c = n0 . n for the unit
+!> vectors of the fibre before and after, R = c I + [v] + v v^T/(1 + c).
 !> Source of the rotation between two directions: Moller and Hughes, Journal of Graphics Tools 4
 !> (1999) 1-4.
 module dd3_model_carried_forces

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Configuration of a run: sheet, contact, tools and the place in the process, but for what the terms
-!> that act on the sheet own (terms/). Arrays of elements and of contact points have those of the
-!> rank's part.
+!> Configuration of a run: sheet, contact, tools and the place in the process, but for what the
+!> terms that act on the sheet own (terms/). Arrays of elements and of contact points have those of
+!> the rank's part.
 module dd3_model_configuration
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : largest_over_ranks
@@ -88,7 +88,8 @@ contains
     integer :: touching(size(self%tools%touches)), t
 
     associate (contact => self%contact)
-      touching = [(count(contact%tool == t .and. contact%status /= status_gap), t=1, size(touching))]
+      touching = [(count(contact%tool == t .and. contact%status /= status_gap), t=1, &
+          size(touching))]
     end associate
     call largest_over_ranks(size(touching), touching)
     self%tools%touches = touching > 0

@@ -117,8 +117,9 @@ contains
           border=border_at(model, phase, c))
       if (.not. hit%found) cycle
       force = 0.0_wp
-      if (state%contact%tool(c) == tool .and. state%contact%status(c) /= status_gap) &
-          force = max(0.0_wp, -dot_product(state%contact%lambda(:, c), hit%normal))
+      if (state%contact%tool(c) == tool .and. state%contact%status(c) /= status_gap) then
+        force = max(0.0_wp, -dot_product(state%contact%lambda(:, c), hit%normal))
+      end if
       missing = max(missing, layer%height - hit%distance)
       sums = sums + force*[1.0_wp, gap_under_force(layer, force) - hit%distance]
     end do

@@ -127,7 +127,8 @@ contains
     model%n_contact = size(kept)
   end subroutine keep_own_points
 
-  !> Return the contact points of a face with four nodes, also those of another rank, row by row, mm.
+  !> Return the contact points of a face with four nodes, also those of another rank, row by row,
+  !> mm.
   pure function points_of_face(model, x, k) result(points)
     type(model_t), intent(in) :: model
     !> Positions of the nodes, `(3, n_node)`, mm.

@@ -98,7 +98,7 @@ contains
         *model%nodal_contact_forces(state%x, state%contact%lambda, state%contact%place), dim=1)
     where (area > 0.0_wp)
       pressure = pressure/max(area, tiny(1.0_wp))
-    elsewhere
+    else where
       pressure = 0.0_wp
     end where
   end function contact_pressures

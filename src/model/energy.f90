@@ -6,7 +6,6 @@ module dd3_model_energy
   use dd3_contact_compliant, only : fraction_of, layer_energy, layer_t
   use dd3_contact_operator, only : status_gap
   use dd3_element_kinematics, only : point_volumes
-  use dd3_material_elasticity, only : elastic_strain
   use dd3_model_contact_layer, only : border_at, layer_at
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
@@ -16,7 +15,8 @@ module dd3_model_energy
   use dd3_tools_tool, only : find_crossing_on_tool, find_on_tool
   implicit none
   private
-  public :: contact_energy, elastic_energy, energy_error, plastic_work_increment
+  public :: contact_energy, elastic_energy, energy_error, modulus_energy_increment
+  public :: plastic_work_increment
 
 contains
 
@@ -32,10 +32,10 @@ contains
     do i = 1, size(model%part%element)
       associate (e => model%part%element(i))
         call point_volumes(model%element, state%x(:, model%connectivity(:, e)), volume)
-        associate (elasticity => model%material(model%material_of(e))%laws%elasticity)
+        associate (material => model%material(model%material_of(e)), sheet => state%sheet)
           do p = 1, size(volume)
-            energy = energy + 0.5_wp*volume(p)*dot_product(state%sheet%stress(:, p, i), &
-                elastic_strain(elasticity, state%sheet%stress(:, p, i)))
+            energy = energy + 0.5_wp*volume(p)*dot_product(sheet%stress(:, p, i), &
+                material%elastic_strain(sheet%stress(:, p, i), sheet%internal_variables(1, p, i)))
           end do
         end associate
       end associate
@@ -88,8 +88,8 @@ contains
   end function contact_energy
 
   !> Return the work on the sheet less internal work, friction work, that of draw-beads and viscous
-  !> forces and the energy of the contact layers, mJ. It vanishes with the increments and the tolerance of
-  !> equilibrium.
+  !> forces and the energy of the contact layers, mJ. It vanishes with the increments and the
+  !> tolerance of equilibrium.
   real(wp) function energy_error(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -97,6 +97,36 @@ contains
     energy_error = state%work%tools + state%work%external - state%work%internal &
         - state%work%friction - dissipated_work(state%term) - contact_energy(model, state)
   end function energy_error
+
+  !> Return the elastic energy that a falling modulus adds between two states, mJ: the change of
+  !> T : C^-1 : T / 2 with C at the mean stress. No work is done for it, but unloading sets it free.
+  real(wp) function modulus_energy_increment(model, old, new) result(work)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: old, new
+
+    real(wp) :: volume(model%element%n_point), stress(6), strain(6), energy(1)
+    integer :: i, p
+
+    work = 0.0_wp
+    if (.not. any(model%material%laws%softens)) return
+    energy = 0.0_wp
+    do i = 1, size(model%part%element)
+      associate (e => model%part%element(i))
+        associate (material => model%material(model%material_of(e)))
+          if (.not. material%laws%softens) cycle
+          call point_volumes(model%element, new%x(:, model%connectivity(:, e)), volume)
+          do p = 1, size(volume)
+            stress = 0.5_wp*(old%sheet%stress(:, p, i) + new%sheet%stress(:, p, i))
+            strain = material%elastic_strain(stress, new%sheet%internal_variables(1, p, i)) &
+                - material%elastic_strain(stress, old%sheet%internal_variables(1, p, i))
+            energy = energy + 0.5_wp*volume(p)*dot_product(stress, strain)
+          end do
+        end associate
+      end associate
+    end do
+    call sum_over_ranks(1, energy)
+    work = energy(1)
+  end function modulus_energy_increment
 
   !> Return the plastic work between two states, mJ: mean equivalent stress times the increment of
   !> the equivalent plastic strain. What back-stresses store is not included.

@@ -246,8 +246,9 @@ contains
     if (held .and. norm2(phase%move(:, tool)) <= 0.0_wp .and. phase%gap_other(tool) == 0 .and. &
         .not. phase%turns(tool)) return
     call digest%add(name)
-    if (phase%turns(tool)) &
-        call digest%add([phase%turn(tool)%centre, phase%turn(tool)%axis, phase%turn(tool)%angle])
+    if (phase%turns(tool)) then
+      call digest%add([phase%turn(tool)%centre, phase%turn(tool)%axis, phase%turn(tool)%angle])
+    end if
     if (phase%tilts(tool)) call digest%add([phase%tilt(tool)%pivot, phase%tilt(tool)%stiffness])
     call digest%add([phase%pressed(tool), phase%active(tool), phase%withdrawn(tool), &
         phase%keeps_tool_load(tool)])

@@ -86,8 +86,9 @@ contains
 
     least_shear = huge(1.0_wp)
     do m = 1, size(self%material)
-      if (any(self%material_of == m)) &
-          least_shear = min(least_shear, self%material(m)%laws%elasticity%shear)
+      if (any(self%material_of == m)) then
+        least_shear = min(least_shear, self%material(m)%laws%elasticity%shear)
+      end if
     end do
   end function least_shear
 

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Visitor of a state that has the components of elements and contact points for all ranks: each rank
-!> gets its own ones.
+!> Visitor of a state that has the components of elements and contact points for all ranks: each
+!> rank gets its own ones.
 module dd3_model_part_visitor
   use dd3_base_kinds, only : wp
   use dd3_model_part, only : part_t

@@ -29,6 +29,8 @@ module dd3_model_phase
     logical :: has_gravity = .false.
     !> Whether this phase or an earlier one unloads the sheet, and no tool acts.
     logical :: unloaded = .false.
+    !> Whether the state at the end is kept for other runs.
+    logical :: keep = .false.
     !> What the phase does to the sets of loads and of pressures, and with the draw-beads.
     type(phase_loads_t) :: loads
     type(phase_pressures_t) :: pressures
@@ -91,8 +93,9 @@ contains
     real(wp), intent(in) :: progress
 
     fading_rate = 1.0_wp
-    if (self%opening > 0.0_wp) &
-        fading_rate = merge(1.0_wp/self%opening, 0.0_wp, progress < self%opening - step)
+    if (self%opening > 0.0_wp) then
+      fading_rate = merge(1.0_wp/self%opening, 0.0_wp, progress < self%opening - step)
+    end if
   end function fading_rate
 
   !> Return the next place of the tables behind a progress; 1 without a table.

@@ -3,12 +3,13 @@
 !> the line d of its force, and, if it tilts, its rotations about two axes e_1 and e_2 across the
 !> line, through a pivot c on the tool. A point p of the tool moves by
 !>     dw = A(p) dq,    A = [d, e_1 x (p - c), e_2 x (p - c)],
-!> and the forces f of the sheet at points p balance the force P on the tool, which acts at its pivot:
+!> and the forces f of the sheet at points p balance the force P on the tool, which acts at its
+!> pivot:
 !>     Q = sum A(p)^T f + (d.P, -k phi_1, -k phi_2) = 0,
-!> phi being the tilt so far and k the stiffness of its support. As the tool tilts, a force turns with
-!> the normal n under it, df = S dq, S = [0, w_1 x f, w_2 x f], w_i = e_i - n n.e_i, and its moment
-!> changes as the point moves, f.dA = P^T (dp - d ds), P = [0, f x e_1, f x e_2]. Without tilt the
-!> last two columns of all three are zero, and q = (s, 0, 0).
+!> phi being the tilt so far and k the stiffness of its support. As the tool tilts, a force turns
+!> with the normal n under it, df = S dq, S = [0, w_1 x f, w_2 x f], w_i = e_i - n n.e_i, and its
+!> moment changes as the point moves, f.dA = P^T (dp - d ds), P = [0, f x e_1, f x e_2]. Without
+!> tilt the last two columns of all three are zero, and q = (s, 0, 0).
 module dd3_model_pressed_tools
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : sum_over_ranks
@@ -22,7 +23,8 @@ module dd3_model_pressed_tools
   implicit none
   private
   public :: point_motion, force_turn, arm_change, tool_balance, unknowns_of, motion_of
-  public :: is_free, support_stiffness, motion_at, turn_tools, begin_tilts, tilt_of, contact_moment, as_forces
+  public :: is_free, support_stiffness, motion_at, turn_tools, begin_tilts, tilt_of, &
+      contact_moment, as_forces
 
 contains
 
@@ -49,7 +51,8 @@ contains
     free = [phase%pressed(tool), phase%tilts(tool), phase%tilts(tool)]
   end function is_free
 
-  !> Return the stiffness of the support of a tool against each of its unknowns: 0, and k in N.mm/rad.
+  !> Return the stiffness of the support of a tool against each of its unknowns: 0, and k in
+  !> N.mm/rad.
   pure function support_stiffness(phase, tool) result(stiffness)
     type(phase_t), intent(in) :: phase
     integer, intent(in) :: tool
@@ -81,8 +84,8 @@ contains
     p = -moments(phase, tool, force)
   end function arm_change
 
-  !> Return 0 and the products e_1 x v and e_2 x v of a vector v with the axes of the tilt of a tool;
-  !> zero without tilt.
+  !> Return 0 and the products e_1 x v and e_2 x v of a vector v with the axes of the tilt of a
+  !> tool; zero without tilt.
   pure function moments(phase, tool, vector) result(product)
     type(phase_t), intent(in) :: phase
     integer, intent(in) :: tool
@@ -97,7 +100,8 @@ contains
     end associate
   end function moments
 
-  !> Return 0 and the components of a vector along the axes of the tilt of a tool; zero without tilt.
+  !> Return 0 and the components of a vector along the axes of the tilt of a tool; zero without
+  !> tilt.
   pure function tilt_along(phase, tool, vector) result(component)
     type(phase_t), intent(in) :: phase
     integer, intent(in) :: tool
@@ -119,7 +123,8 @@ contains
     axis(:, 2) = cross(line, axis(:, 1))
   end function across
 
-  !> Return Q, the residual of the balance of a pressed tool: N, and N.mm about the axes of its tilt.
+  !> Return Q, the residual of the balance of a pressed tool: N, and N.mm about the axes of its
+  !> tilt.
   function tool_balance(model, state, tool, point_force) result(balance)
     type(model_t), intent(in) :: model
     !> Has the force on the tool and that of the sheet.
@@ -139,7 +144,8 @@ contains
     end associate
   end function tool_balance
 
-  !> Return the residual of the balance of a tool as forces: its moments over the arm of the tool, N.
+  !> Return the residual of the balance of a tool as forces: its moments over the arm of the tool,
+  !> N.
   pure function as_forces(phase, tool, balance) result(force)
     type(phase_t), intent(in) :: phase
     integer, intent(in) :: tool
@@ -230,8 +236,8 @@ contains
     end do
   end subroutine turn_tools
 
-  !> Refer the displacements of the tools that begin to tilt in a phase to their pivots, and their tilt
-  !> to their present rotations.
+  !> Refer the displacements of the tools that begin to tilt in a phase to their pivots, and their
+  !> tilt to their present rotations.
   pure subroutine begin_tilts(phase, tilted, tools)
     type(phase_t), intent(in) :: phase
     !> Tools that tilted in the phase before, `(n_tool)`.

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> State of the contact on a refined sheet: a new contact point takes pressure and friction stress,
-!> the tool, the status, the slip path and the closest points of the old points around it on the same
-!> face. Those of edges that cross the border of a tool are kept where the edge is the same.
+!> the tool, the status, the slip path and the closest points of the old points around it on the
+!> same face. Those of edges that cross the border of a tool are kept where the edge is the same.
 module dd3_model_refined_contact
   use dd3_base_kinds, only : wp
   use dd3_contact_operator, only : status_gap

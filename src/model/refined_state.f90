@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> State of a run on a refined sheet. Tools, terms and the place in the process stay; positions,
-!> stresses and internal variables are those of the refined sheet; what belongs to the contact points
-!> and to the start of the phase is carried over. Internal forces are left to the caller: the state
-!> is in equilibrium but for what the transfer changes.
+!> stresses and internal variables are those of the refined sheet; what belongs to the contact
+!> points and to the start of the phase is carried over. Internal forces are left to the caller: the
+!> state is in equilibrium but for what the transfer changes.
 module dd3_model_refined_state
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : text_t
@@ -74,8 +74,8 @@ contains
     call new_sheet_state(new%sheet, model, sheet)
     call carry_contact(old_model, old%configuration_t, model, origin, new)
     new%start%x = origin%interpolate_nodal(old%start%x)
-    call origin%carry_points(reshape(old%start%plastic_strain, [1, shape(old%start%plastic_strain)]), &
-        strain)
+    call origin%carry_points(reshape(old%start%plastic_strain, &
+        [1, shape(old%start%plastic_strain)]), strain)
     new%start%plastic_strain = strain(1, :, :)
     do k = 1, size(new%term)
       call new%term(k)%of%extend(old_model, model, new%configuration_t)
@@ -84,8 +84,8 @@ contains
     new%external_force = external_forces(new%term, model, new%configuration_t)
   end subroutine refined_state
 
-  !> Find the faces again of which depths of tools are told; the depth in a face that is divided does
-  !> not count any more.
+  !> Find the faces again of which depths of tools are told; the depth in a face that is divided
+  !> does not count any more.
   subroutine carry_observations(old_model, model, new)
     type(model_t), intent(in) :: old_model, model
     type(state_t), intent(inout) :: new

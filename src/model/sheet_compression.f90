@@ -19,8 +19,8 @@ module dd3_model_sheet_compression
 
 contains
 
-  !> Find the compressed elements that tools do not hold at all nodes of both faces of the sheet. All
-  !> elements of a column are or none is.
+  !> Find the compressed elements that tools do not hold at all nodes of both faces of the sheet.
+  !> All elements of a column are or none is.
   subroutine find_compressed(model, state, compressed, yielding)
     type(model_t), intent(in) :: model
     !> Committed state.

@@ -81,8 +81,9 @@ contains
     real(wp), intent(in) :: a(3), b(3)
 
     angle = 0.0_wp
-    if (norm2(a) > 0.0_wp .and. norm2(b) > 0.0_wp) &
-        angle = atan2(norm2(cross(a, b)), dot_product(a, b))
+    if (norm2(a) > 0.0_wp .and. norm2(b) > 0.0_wp) then
+      angle = atan2(norm2(cross(a, b)), dot_product(a, b))
+    end if
   end function angle_between
 
   !> Find the largest angle by which the tools that each of some elements can meet on either face
@@ -153,7 +154,8 @@ contains
     distance = relative_distance*maxval(length)
     ! Most elements have nothing near, and no more than a neighbour: one search from the centre.
     facing = facing_t(-face_normal(corner), cos(rotation))
-    if (turn_over(field, centre, distance + 0.5_wp*diagonal, maxval(length), facing) <= largest) return
+    if (turn_over(field, centre, distance + 0.5_wp*diagonal, maxval(length), &
+        facing) <= largest) return
     reach = distance + 0.5_wp*diagonal/real(n_part, wp)
     do j = 0, n_part
       do i = 0, n_part

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Tilt of a tool under a prescribed force: it is free to rotate about two axes across the line of the
-!> force, through a pivot at which the force acts.
+!> Tilt of a tool under a prescribed force: it is free to rotate about two axes across the line of
+!> the force, through a pivot at which the force acts.
 module dd3_model_tilt
   use dd3_base_kinds, only : wp
   use dd3_tools_surface, only : surface_t

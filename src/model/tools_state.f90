@@ -12,20 +12,20 @@ module dd3_model_tools_state
 
   !> State of the tools.
   type :: tools_state_t
-    !> Displacement from the coordinates of their files, `(3, n_tool)`, mm; of those that turn or tilt,
-    !> of the point `centre` on the axis or the pivot, `(3, n_tool)`, mm.
+    !> Displacement from the coordinates of their files, `(3, n_tool)`, mm; of those that turn or
+    !> tilt, of the point `centre` on the axis or the pivot, `(3, n_tool)`, mm.
     real(wp), allocatable :: displacement(:, :), centre(:, :)
     !> Rotation, `(3, 3, n_tool)`, and angle since the start of the job, `(n_tool)`, rad.
     real(wp), allocatable :: rotation(:, :, :), angle(:)
     !> Rotation from which the tilt is measured, `(3, 3, n_tool)`.
     real(wp), allocatable :: untilted(:, :, :)
-    !> Force pressed on them, and that of the sheet on them with those of their draw-beads and fading
-    !> ones, `(3, n_tool)`, N.
+    !> Force pressed on them, and that of the sheet on them with those of their draw-beads and
+    !> fading ones, `(3, n_tool)`, N.
     real(wp), allocatable :: load(:, :), force(:, :)
     !> Distance by which the contact layer lies behind its place, `(n_tool)`, mm.
     real(wp), allocatable :: layer_offset(:)
-    !> Whether each is in contact with the sheet, on any rank, and whether it has been since the start
-    !> of the job, `(n_tool)`.
+    !> Whether each is in contact with the sheet, on any rank, and whether it has been since the
+    !> start of the job, `(n_tool)`.
     logical, allocatable :: touches(:), touched(:)
   contains
     procedure :: placement

@@ -13,6 +13,8 @@ module dd3_model_work_state
     real(wp) :: tools = 0.0_wp, external = 0.0_wp
     !> Of the internal forces, of the equivalent stress, of friction.
     real(wp) :: internal = 0.0_wp, plastic = 0.0_wp, friction = 0.0_wp
+    !> Elastic energy that falling moduli added.
+    real(wp) :: modulus = 0.0_wp
   contains
     procedure :: walk
   end type work_state_t
@@ -29,6 +31,7 @@ contains
     call visitor%one_real("internal_work", self%internal)
     call visitor%one_real("plastic_work", self%plastic)
     call visitor%one_real("friction_work", self%friction)
+    call visitor%one_real("modulus_energy", self%modulus)
   end subroutine walk
 
 end module dd3_model_work_state

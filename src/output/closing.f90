@@ -5,7 +5,7 @@ module dd3_output_closing
   use dd3_base_kinds, only : wp
   implicit none
   private
-  public :: closing_t, held_t, place_t, punch_t, support_t
+  public :: closing_t, held_t, pin_t, place_t, punch_t, support_t
 
   !> Distance at a node of the sheet.
   type :: place_t
@@ -50,11 +50,34 @@ module dd3_output_closing
     integer :: tool = 0
   end type support_t
 
+  !> Locating pin in a hole of the sheet, at the largest force that it carries in a phase.
+  type :: pin_t
+    !> Name of its support; not allocated before the first increment.
+    character(len=:), allocatable :: name
+    !> Diameter, mm, and force across its axis, N.
+    real(wp) :: diameter = 0.0_wp, force = 0.0_wp
+    !> Thickness of the sheet there, mm, and its flow stress, MPa.
+    real(wp) :: thickness = 0.0_wp, flow_stress = 0.0_wp
+  contains
+    procedure :: pressure
+  end type pin_t
+
   !> Measures at the end of a phase.
   type :: closing_t
     type(punch_t), allocatable :: punch(:)
     type(held_t), allocatable :: holder(:)
     type(support_t) :: support
+    !> Those of the whole phase; in a continued run those since its start.
+    type(pin_t), allocatable :: pin(:)
   end type closing_t
+
+contains
+
+  !> Return the mean bearing pressure of a pin on its hole, MPa.
+  pure real(wp) function pressure(self)
+    class(pin_t), intent(in) :: self
+
+    pressure = self%force/(self%diameter*self%thickness)
+  end function pressure
 
 end module dd3_output_closing

@@ -87,8 +87,9 @@ contains
 
     room = self%types%room(model%n_element) + self%connectivity%room(size(model%connectivity)) &
         + self%offsets%room(model%n_element + 1)
-    if (allocated(model%level)) &
-        room = room + 8*(int(self%types%rows, i8) + 3*int(model%n_element, i8))
+    if (allocated(model%level)) then
+      room = room + 8*(int(self%types%rows, i8) + 3*int(model%n_element, i8))
+    end if
   end function room
 
   !> Add the mesh of a model.
@@ -101,8 +102,9 @@ contains
 
     integer :: e
 
-    if (allocated(model%level) .and. self%level%data%id < 0) &
-        call create_level(self, file, model%n_element, ok)
+    if (allocated(model%level) .and. self%level%data%id < 0) then
+      call create_level(self, file, model%n_element, ok)
+    end if
     self%last = self%last + 1
     self%at_cell = int(self%types%rows, i8)
     self%at_connectivity = int(self%connectivity%rows, i8)

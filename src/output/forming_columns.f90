@@ -42,6 +42,9 @@ contains
       names = names//","//trim(energy_name(i))
       units = units//",mJ"
     end do
+    if (.not. any(model%material%laws%softens)) return
+    names = names//",modulus_energy"
+    units = units//",mJ"
   end subroutine add_forming_heading
 
   !> Add the values of a state to a row.
@@ -65,6 +68,7 @@ contains
     end do
     call table%add_reals(row)
     call table%add_reals(energies(model, state))
+    if (any(model%material%laws%softens)) call table%add_real(state%work%modulus)
   end subroutine add_forming_values
 
   !> Return work and energies, mJ.

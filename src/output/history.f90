@@ -216,8 +216,9 @@ contains
     integer, allocatable :: first(:)
     integer :: i
 
-    if (any(model%history%reaction .or. model%history%moment)) &
-        reaction = support_reactions(model, state)
+    if (any(model%history%reaction .or. model%history%moment)) then
+      reaction = support_reactions(model, state)
+    end if
     do i = 1, size(model%history)
       first = model%first_nodes(model%history(i)%node)
       if (model%history(i)%displacement) then
@@ -227,10 +228,12 @@ contains
         call table%add_reals(sum(reaction(:, model%history(i)%node), dim=2))
       end if
       if (model%history(i)%position) call table%add_reals(mean(state%x, first))
-      if (model%history(i)%moment) &
-          call table%add_reals(moment(state%x, reaction, model%history(i)%node, mean(state%x, first)))
-      if (model%history(i)%draw_in) &
-          call table%add_real(mean_draw_in(model, state%x, first))
+      if (model%history(i)%moment) then
+        call table%add_reals(moment(state%x, reaction, model%history(i)%node, mean(state%x, first)))
+      end if
+      if (model%history(i)%draw_in) then
+        call table%add_real(mean_draw_in(model, state%x, first))
+      end if
     end do
   end subroutine add_set_values
 

@@ -3,6 +3,7 @@
 !> the first writes them, and gives the others its errors.
 module dd3_output_records
   use dd3_base_error, only : error_t, keep_first, share_error
+  use dd3_base_file, only : make_directory
   use dd3_base_ranks, only : broadcast_integers, this_rank
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
@@ -82,8 +83,9 @@ contains
     self%restart_increment = state%increment
     lost = ""
     call resume_history(self, model, source, state, lost, error)
-    if (this_rank() == 0 .and. .not. allocated(error)) &
-        call resume_files(self, model, source, state, lost, error)
+    if (this_rank() == 0 .and. .not. allocated(error)) then
+      call resume_files(self, model, source, state, lost, error)
+    end if
     call share_error(error)
     if (allocated(error)) return
     fields_lost = merge(1, 0, index(lost, "fields") > 0)
@@ -159,8 +161,9 @@ contains
     call share_error(error)
     if (allocated(error)) return
     due = fields_due
-    if (model%output%fields == fields_increments) &
-        due = due .or. every(nint(model%output%fields_value(1)), state)
+    if (model%output%fields == fields_increments) then
+      due = due .or. every(nint(model%output%fields_value(1)), state)
+    end if
     if (due) call write_fields(self, model, state, error)
     if (allocated(error)) return
     if (every(model%output%restart_every, state)) call save(self, model, state, error)
@@ -189,7 +192,25 @@ contains
     self%ended = state%phase == size(model%phase)
     if (self%ended) self%restart_increment = -1
     if (.not. allocated(error)) call save(self, model, state, error)
+    if (.not. allocated(error) .and. model%phase(state%phase)%keep) &
+        call keep_phase_end(self, model, state, error)
   end subroutine write_phase_end
+
+  !> Write the state at the end of a phase into a folder of its name, as that of a run that ends
+  !> there: other runs start from it.
+  subroutine keep_phase_end(self, model, state, error)
+    type(records_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(error_t), allocatable, intent(out) :: error
+
+    character(len=:), allocatable :: folder
+
+    folder = self%directory//"/"//model%phase(state%phase)%name
+    if (this_rank() == 0) call make_directory(folder, error)
+    call share_error(error)
+    if (.not. allocated(error)) call write_restart(folder, model, state, .true., error)
+  end subroutine keep_phase_end
 
   !> Write the restart file of a state that is about to change without an increment: a run that
   !> stops before the next one is accepted continues from here.
@@ -242,8 +263,9 @@ contains
     if (this_rank() == 0) call self%history%flush(error)
     if (this_rank() == 0 .and. .not. allocated(error)) call self%status%flush(error)
     call share_error(error)
-    if (.not. allocated(error)) &
-        call write_restart(self%directory, model, state, self%ended, error)
+    if (.not. allocated(error)) then
+      call write_restart(self%directory, model, state, self%ended, error)
+    end if
   end subroutine save_state
 
   !> Write the last state and close the records. The fields of the last state are no output that was

@@ -71,8 +71,9 @@ contains
       if (.not. allocated(error)) call guard%reserve(0_i8, writer%bytes + overhead, error)
     end if
     call share_error(error)
-    if (.not. allocated(error)) &
-        call write_content(part_of(path), model, ended, state, writer%ok)
+    if (.not. allocated(error)) then
+      call write_content(part_of(path), model, ended, state, writer%ok)
+    end if
     if (this_rank() == 0) call finish_file(path, guard, writer%ok, error)
     call share_error(error)
   end subroutine write_restart

@@ -99,8 +99,9 @@ contains
       call run_segment(run, model, path, path%segment(i), record, error)
       strain = max(strain, maxval(abs(run%state%strain/kelvin_factor)))
     end do
-    if (.not. allocated(error)) &
-        call log%say("point "//path%name//": "//to_text(run%increment)//" steps")
+    if (.not. allocated(error)) then
+      call log%say("point "//path%name//": "//to_text(run%increment)//" steps")
+    end if
     log%increment = run%increment
     if (strain > notable_strain) call log%report("W113", "point "//path%name// &
         ": logarithmic strain of "//to_text(strain, 4)//": unusual; 0.1 is about 10 %")

@@ -291,8 +291,9 @@ contains
     associate (model => self%model, problem => self%system%problem, step => self%step, &
         phase => self%model%phase(self%trial%phase))
       free = .not. phase%prescribed
-      if (model%part%divided) &
-          free = free .and. spread(model%part%node_owner == rank, 1, 3)
+      if (model%part%divided) then
+        free = free .and. spread(model%part%node_owner == rank, 1, 3)
+      end if
       own = sum(problem%law_residual*step%x, mask=free) &
           + sum(sum(self%system%enhanced%residual*step%enhanced, dim=1))
       call sum_over_ranks(1, own)
@@ -301,8 +302,9 @@ contains
         if (phase%pressed(tool)) work = work - dot_product(problem%tool_residual(:, tool), &
             unknowns_of(phase, tool, step%tool(:, tool), step%tilt(:, tool)))
       end do
-      if (abs(work) <= negligible_work*norm2(self%trial%sheet%internal_force)*norm2(step%x)) &
-          work = 0.0_wp
+      if (abs(work) <= negligible_work*norm2(self%trial%sheet%internal_force)*norm2(step%x)) then
+        work = 0.0_wp
+      end if
       work = agreed(work)
     end associate
   end function slope

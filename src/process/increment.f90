@@ -30,8 +30,8 @@ module dd3_process_increment
   private
   public :: prepare_increment, try_increment, accept_increment
 
-  !> Iterations without contraction after which an attempt at an increment of a release is ended, near
-  !> the solution too: contact of nodes that buckle opens and closes for ever.
+  !> Iterations without contraction after which an attempt at an increment of a release is ended,
+  !> near the solution too: contact of nodes that buckle opens and closes for ever.
   integer, parameter :: release_patience = 15
 
 contains
@@ -122,6 +122,8 @@ contains
       case (newton_diverging, newton_slow)
         verdict%outcome = verdict_retry
         call equilibrium%explain(verdict)
+      case default
+        ! The verdict of the corrector stands.
       end select
       c = 0
       if (verdict%node > 0) c = equilibrium%model%candidate_of(verdict%node)

@@ -43,9 +43,10 @@ module dd3_process_limiters
   !> Largest motion in an increment of a tool that is withdrawn, in thicknesses of the sheet.
   real(wp), parameter :: opening_step = 2.5_wp
   !> The first motion over the height of a contact layer, in the mixed formulation over the
-  !> thickness of the sheet; two tools open by twice of it. A drawn strip snaps between tools that open; in runs with holder
-  !> forces within 0.3 % its springback is 5.81 to 5.94 mm with 0.25, 5.91 to 5.94 with 0.125, 5.94
-  !> to 5.97 with 0.0625, and 5.83 to 5.95 with 0.03, where increments fail in some.
+  !> thickness of the sheet; two tools open by twice of it. A drawn strip snaps between tools that
+  !> open; in runs with holder forces within 0.3 % its springback is 5.81 to 5.94 mm with 0.25, 5.91
+  !> to 5.94 with 0.125, 5.94 to 5.97 with 0.0625, and 5.83 to 5.95 with 0.03, where increments fail
+  !> in some.
   real(wp), parameter :: first = 0.0625_wp
 
 contains
@@ -80,8 +81,9 @@ contains
       call apply("gap", gap_limit)
       call apply("opening", opening_limit)
       call apply("until", until_limit)
-      if (any(state%start%layer_offset > 0.0_wp)) &
-          call end_after("layer", progress_left(state%progress))
+      if (any(state%start%layer_offset > 0.0_wp)) then
+        call end_after("layer", progress_left(state%progress))
+      end if
       call end_after("output", next_output_progress(model%output, phase, state) - state%progress)
       if (model%part%divided) call copy_limit(0, limit)
     end associate
@@ -164,8 +166,9 @@ contains
       end do
       !$omp end parallel do
       e = maxloc(largest, dim=1)
-      if (largest(e) > bound) &
-          limit = limit_t(r=allowed%value/largest(e), element=model%part%element(e), point=point(e))
+      if (largest(e) > bound) then
+        limit = limit_t(r=allowed%value/largest(e), element=model%part%element(e), point=point(e))
+      end if
     end associate
   end function strain_limit
 
@@ -237,8 +240,9 @@ contains
     end do
     !$omp end parallel do
     e = minloc(bound, dim=1)
-    if (point(e) > 0) &
-        limit = limit_t(r=bound(e), element=model%part%element(e), point=point(e))
+    if (point(e) > 0) then
+      limit = limit_t(r=bound(e), element=model%part%element(e), point=point(e))
+    end if
   end function stress_limit
 
   !> Find the smallest bound by the stress at the points of an element.
@@ -412,8 +416,9 @@ contains
       else
         rate = 0.0_wp
         do c = 1, model%n_contact
-          if (state%contact%tool(c) == tool) &
-              rate = rate + dot_product(line, stepper%prediction%step%lambda(:, c))
+          if (state%contact%tool(c) == tool) then
+            rate = rate + dot_product(line, stepper%prediction%step%lambda(:, c))
+          end if
         end do
         call sum_over_ranks(1, rate)
       end if

@@ -32,8 +32,8 @@ module dd3_process_norm
   type :: residual_t
     !> N.
     real(wp) :: norm = 0.0_wp
-    !> Norm of residuals and step over their scale, eq. (19); largest imbalance of a pressed tool over
-    !> its force, weighted; and the norm that decides.
+    !> Norm of residuals and step over their scale, eq. (19); largest imbalance of a pressed tool
+    !> over its force, weighted; and the norm that decides.
     real(wp) :: sheet = 0.0_wp, tools = 0.0_wp, scaled = 0.0_wp
     !> Node with the largest residual, and that residual, N.
     integer :: worst_node = 0
@@ -45,8 +45,8 @@ module dd3_process_norm
   !> Smaller: a more accurate shape for more iterations; a strip drawn by 30 mm and released ends
   !> 0.06 mm elsewhere with 1e-2, 0.01 mm with 1e-3.
   real(wp), parameter :: free_tolerance = 1.0e-5_wp
-  !> The same while the tools are withdrawn and touch the sheet: its shape is not final, and stick and
-  !> slip at the last nodes do not settle to the last digit.
+  !> The same while the tools are withdrawn and touch the sheet: its shape is not final, and stick
+  !> and slip at the last nodes do not settle to the last digit.
   real(wp), parameter :: opening_tolerance = 1.0e-3_wp
   !> Residual that counts as zero, over the root mean square of the round-off. In S-shaped rails
   !> (input_files/rail, 48 to 1080 elements) residuals stall at 1.0 to 3.5 times the latter, as the
@@ -89,8 +89,9 @@ contains
 
     tolerance = phase%newton%tolerance
     if (phase%unloaded .or. phase%has_gravity .or. &
-        (size(phase%active) > 0 .and. .not. any(phase%active .and. .not. phase%withdrawn))) &
-        tolerance = min(tolerance, free_tolerance)
+        (size(phase%active) > 0 .and. .not. any(phase%active .and. .not. phase%withdrawn))) then
+      tolerance = min(tolerance, free_tolerance)
+    end if
   end function final_tolerance
 
   !> Return the norm of a trial state: eq. (19), or the imbalance of a pressed tool if that is

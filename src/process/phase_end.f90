@@ -117,6 +117,8 @@ contains
         progress = output%fields_value(i)/phase%length
         exit
       end do
+    case default
+      ! None within the phase.
     end select
     if (progress > 1.0_wp) progress = huge(1.0_wp)
   end function next_output_progress

@@ -104,7 +104,8 @@ contains
   end function returns
 
   !> Put the tools that the phase before withdrew along paths of the program's choice back to where
-  !> they were: they have no contact, and a phase that names them again tells their motion from there.
+  !> they were: they have no contact, and a phase that names them again tells their motion from
+  !> there.
   pure subroutine return_tools(model, number, state)
     type(model_t), intent(in) :: model
     !> Number of the phase.

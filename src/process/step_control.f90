@@ -133,8 +133,9 @@ contains
     type(attempt_t), intent(in) :: attempt
 
     if (attempt%after_failure) state%r_cap = attempt%limit%r
-    if (state%r_cap < huge(1.0_wp)/release_growth) &
-        state%r_cap = merge(release_growth, growth, attempt%releases)*state%r_cap
+    if (state%r_cap < huge(1.0_wp)/release_growth) then
+      state%r_cap = merge(release_growth, growth, attempt%releases)*state%r_cap
+    end if
   end subroutine set_next_r_cap
 
   !> Whether an increment with the present r is large enough for the phase to end.

@@ -13,8 +13,8 @@ module dd3_process_tool_balance
   private
   public :: balance_tools
 
-  !> Largest residual of a pressed tool, over its force, that its motion reduces. Larger ones are left
-  !> to the iterations.
+  !> Largest residual of a pressed tool, over its force, that its motion reduces. Larger ones are
+  !> left to the iterations.
   real(wp), parameter :: largest_fraction = 1.0e-3_wp
   !> Largest number of such motions.
   integer, parameter :: most_motions = 4

@@ -6,7 +6,7 @@ module dd3_process_work
   use dd3_base_ranks, only : sum_over_ranks, this_rank
   use dd3_contact_operator, only : status_gap, status_slip
   use dd3_sheet_surface_point, only : surface_point_t
-  use dd3_model_energy, only : plastic_work_increment
+  use dd3_model_energy, only : modulus_energy_increment, plastic_work_increment
   use dd3_model_model, only : model_t
   use dd3_model_reactions, only : reactions
   use dd3_model_state, only : state_t
@@ -33,6 +33,7 @@ contains
     new%work%internal = old%work%internal &
         + 0.5_wp*sum((old%sheet%internal_force + new%sheet%internal_force)*moved)
     new%work%plastic = old%work%plastic + plastic_work_increment(model, old, new)
+    new%work%modulus = old%work%modulus + modulus_energy_increment(model, old, new)
     call add_external_work(model, old, moved, new)
     call add_contact_work(model, contact, old, new)
     do k = 1, size(new%term)
@@ -89,8 +90,9 @@ contains
       advance = old%tools%layer_offset(tool) - new%tools%layer_offset(tool)
       work(1) = work(1) - dot_product(force, tool_motion + advance*normal)
       work(2) = work(2) + dot_product(force, slip)
-      if (new%contact%status(c) == status_slip .and. old%contact%status(c) /= status_gap) &
-          new%contact%slip_path(c) = new%contact%slip_path(c) + norm2(slip)
+      if (new%contact%status(c) == status_slip .and. old%contact%status(c) /= status_gap) then
+        new%contact%slip_path(c) = new%contact%slip_path(c) + norm2(slip)
+      end if
     end do
     call sum_over_ranks(2, work)
     new%work%tools = work(1)

@@ -17,6 +17,7 @@ module dd3_report_attempt_report
   use dd3_output_status, only : status_row_t
   use dd3_process_open_edges, only : edge_name
   use dd3_process_step_control, only : attempt_t, stepper_t
+  use dd3_report_necked_sheet, only : has_necked
   use dd3_report_node_report, only : place_of_node
   implicit none
   private
@@ -41,6 +42,8 @@ module dd3_report_attempt_report
   character(len=*), parameter :: line_search_remedy = "line_search = on in *NEWTON"
   character(len=*), parameter :: material_remedy = "units and parameters of the material"
   character(len=*), parameter :: limit_remedy = "a larger value of this limit"
+  character(len=*), parameter :: necked_remedy = "larger radii of the tools, less restraint "// &
+      "and friction, as the sheet has necked"
   character(len=*), parameter :: mesh_remedy = "a finer mesh there"
 
   !> Factors on the penalty, on the height of the contact layer and on the limit of rotation that
@@ -105,8 +108,9 @@ contains
       row%shortened = attempt%course%shortened
       row%eliminated = attempt%course%eliminations
       if (allocated(attempt%course%norm)) then
-        if (size(attempt%course%norm) > 0) &
-            row%criterion = attempt%course%norm(size(attempt%course%norm))
+        if (size(attempt%course%norm) > 0) then
+          row%criterion = attempt%course%norm(size(attempt%course%norm))
+        end if
       end if
       if (verdict%element > 0) then
         row%worst_element = verdict%element
@@ -193,6 +197,7 @@ contains
     character(len=:), allocatable :: remedy
 
     remedy = remedy_of_input(committed, attempt)
+    if (len(remedy) == 0 .and. has_necked(model, committed)) remedy = necked_remedy
     if (len(remedy) == 0 .and. attempt%passage%tool > 0) remedy = surface_remedy
     if (len(remedy) > 0) return
     associate (phase => model%phase(committed%phase), verdict => attempt%verdict)
@@ -245,6 +250,8 @@ contains
       if (attempt%solver%solver == "petsc_mumps") remedy = support_remedy
     case (cause_large_step)
       if (committed%increment == 0) remedy = support_remedy
+    case default
+      ! Removed by smaller increments.
     end select
   end function remedy_of_input
 

@@ -31,7 +31,8 @@ contains
   subroutine measure_closing(model, state, closing)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
-    type(closing_t), intent(out) :: closing
+    !> Its pins are left as they are.
+    type(closing_t), intent(inout) :: closing
 
     type(path_t) :: path
     type(punch_t) :: punch
@@ -39,7 +40,8 @@ contains
     logical :: acts(model%n_tool)
     integer :: t
 
-    allocate (closing%punch(0), closing%holder(0))
+    closing%punch = [punch_t ::]
+    closing%holder = [held_t ::]
     if (model%n_tool == 0 .or. .not. allocated(model%column)) return
     if (any([(model%turns(t), t=1, model%n_tool)])) return
     associate (phase => model%phase(state%phase))

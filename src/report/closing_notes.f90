@@ -32,8 +32,9 @@ contains
 
     beyond_holder = notable_beyond*model%thickness
     do i = 1, size(closing%punch)
-      if (closing%punch(i)%floor%node > 0) &
-          call add_punch_note(model, state, closing%punch(i), notes)
+      if (closing%punch(i)%floor%node > 0) then
+        call add_punch_note(model, state, closing%punch(i), notes)
+      end if
     end do
     do i = 1, size(closing%holder)
       associate (beyond => closing%holder(i)%beyond, tool => closing%holder(i)%tool)

@@ -87,10 +87,12 @@ contains
       view(2)%gap(tool) = huge(1.0_wp)
       other = minloc(view(2)%gap, dim=1)
       if (-dot_product(view(1)%normal(:, tool), view(2)%normal(:, other)) < alike) cycle
-      if (view(1)%gap(tool) >= largest(1)%distance) &
-          largest(1) = new_place(state, n(1), view(1)%gap(tool), tool)
-      if (view(2)%gap(other) >= largest(2)%distance) &
-          largest(2) = new_place(state, n(2), view(2)%gap(other), other)
+      if (view(1)%gap(tool) >= largest(1)%distance) then
+        largest(1) = new_place(state, n(1), view(1)%gap(tool), tool)
+      end if
+      if (view(2)%gap(other) >= largest(2)%distance) then
+        largest(2) = new_place(state, n(2), view(2)%gap(other), other)
+      end if
     end do
     self%wave = largest(minloc(largest%distance, dim=1))
     self%lift = largest(2)

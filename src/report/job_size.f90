@@ -116,8 +116,8 @@ contains
     points = real(model%element%n_point, wp)*real(size(model%part%element), wp)
   end function points
 
-  !> Return the memory of a run whose mesh is refined, bytes: while it is, the sheet before and after
-  !> are held with their states. Runs of 600 to 2,500 elements took 0.8 to 1.0 of it.
+  !> Return the memory of a run whose mesh is refined, bytes: while it is, the sheet before and
+  !> after are held with their states. Runs of 600 to 2,500 elements took 0.8 to 1.0 of it.
   pure real(wp) function refined_bytes(self, elements) result(bytes)
     type(job_size_t), intent(in) :: self
     !> Largest number of elements.

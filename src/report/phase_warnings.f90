@@ -23,6 +23,7 @@ module dd3_report_phase_warnings
   use dd3_model_tolerances, only : tangential
   use dd3_process_phase_end, only : phase_is_over, until_met, until_tolerance, until_value
   use dd3_process_phase_start, only : gap_of_tool
+  use dd3_report_necked_sheet, only : necking_warning
   use dd3_report_refinement_warnings, only : add_refinement_warnings
   use dd3_report_tool_warnings, only : add_tool_warnings
   use dd3_report_unload_report, only : add_reactions, imbalance_warning, unload_note
@@ -82,10 +83,13 @@ contains
       call notes%add_new("W116", snap_warning(model, state, elastic_energy(model, state)))
       call add_reactions(model, state, notes)
       call notes%add_new("N104", gap_note(model, state))
-      if (state%phase == size(model%phase)) &
-          call notes%add_new("W115", energy_warning(state, elastic_energy(model, state), &
+      if (state%phase == size(model%phase)) then
+        call notes%add_new("W115", energy_warning(state, elastic_energy(model, state), &
           energy_error(model, state)))
+      end if
     end if
+    if (.not. ended .or. state%phase == size(model%phase)) &
+        call notes%add_new("W123", necking_warning(model, state))
     call add_tool_warnings(model, state, ended, adaptive, notes)
     call add_refinement_warnings(model, state, adaptive, notes)
   end subroutine end_notes

@@ -153,8 +153,9 @@ contains
           " while tools are withdrawn, then "
       text = text//to_text(final_tolerance(phase), 3)
       if (final_tolerance(phase) < given) text = text//", as the sheet is free or has its weight"
-      if (final_tolerance(phase) < given .or. any(phase%withdrawn)) &
-          text = text//" (tolerance of *NEWTON "//to_text(given, 3)//")"
+      if (final_tolerance(phase) < given .or. any(phase%withdrawn)) then
+        text = text//" (tolerance of *NEWTON "//to_text(given, 3)//")"
+      end if
     end associate
   end function tolerance_settings
 

@@ -189,8 +189,10 @@ contains
     if (.not. any(model%member(tool, node))) then
       node = 0
     else if (all(model%member(tool, node))) then
-      if (dot_product(path%normal(:, node(2)) - path%normal(:, node(1)), path%direction) < 0.0_wp) &
-          node = node([2, 1])
+      if (dot_product(path%normal(:, node(2)) - path%normal(:, node(1)), &
+          path%direction) < 0.0_wp) then
+        node = node([2, 1])
+      end if
     else if (model%member(tool, node(2))) then
       node = node([2, 1])
     end if

@@ -43,8 +43,9 @@ contains
     associate (phase => model%phase(state%phase), active => model%phase(state%phase)%active)
       do a = 1, model%n_tool
         if (.not. active(a)) cycle
-        if (ended .and. .not. phase%withdrawn(a)) &
-            call add("W108", contact_warning(model, state, a))
+        if (ended .and. .not. phase%withdrawn(a)) then
+          call add("W108", contact_warning(model, state, a))
+        end if
         if (.not. phase%withdrawn(a)) call add("W109", depth_warning(model, state, a, adaptive))
         call add("W110", edge_warning(model, state, a))
         do b = a + 1, model%n_tool
@@ -125,7 +126,8 @@ contains
       length = maxval(norm2(edge, dim=1))
       part = length/real(parts_of_edge(model), wp)
       if (depth < slight_depth) return
-      if (depth < notable_depth .and. state%observed%largest_depth(tool) < notable_slope*part) return
+      if (depth < notable_depth &
+          .and. state%observed%largest_depth(tool) < notable_slope*part) return
       text = "tool '"//model%tool(tool)%name//"' entered the sheet between its nodes by up to "// &
           to_text(state%observed%largest_depth(tool), 3)//" mm ("//to_text(depth, 2)// &
           " thicknesses), at the face of element "// &
@@ -144,8 +146,9 @@ contains
     end associate
     if (adaptive%levels == 0) return
     level = halvings(length, expected)
-    if (allocated(model%level)) &
-        level = level + model%level(model%face%element(state%observed%deepest_face(tool)))
+    if (allocated(model%level)) then
+      level = level + model%level(model%face%element(state%observed%deepest_face(tool)))
+    end if
     text = text//": "//levels_advice(adaptive, level, length/2.0_wp**halvings(length, expected))
   end function depth_warning
 
@@ -155,8 +158,9 @@ contains
     type(model_t), intent(in) :: model
 
     parts_of_edge = 1
-    if (size(model%face%node, 1) == 4) &
-        parts_of_edge = nint(sqrt(real(size(model%face_point, 1), wp))) - 1
+    if (size(model%face%node, 1) == 4) then
+      parts_of_edge = nint(sqrt(real(size(model%face_point, 1), wp))) - 1
+    end if
   end function parts_of_edge
 
   !> Return the length between contact points with which a radius gives no warning, mm: the depth

@@ -3,14 +3,15 @@
 !>
 !> An element is divided before it comes to lie on a radius of a tool that turns by more than the
 !> angle of the input over the length of the element, or that would enter it between its nodes by a
-!> depth that is reported, as the exact surfaces of the tools tell: later the forces would change, as
-!> the length of a chord is not that of its arc. What of a tool the sheet can meet soon is near and
-!> has nearly the direction of the sheet, which must rotate to lie on the rest. As soon as an element
-!> would meet such a radius in the next part of the travel, all that would in a longer part are
-!> divided, so that the mesh changes a few times only. Where the sheet turns by more than the angle
-!> without a tool, as where it bends freely, it is divided too; an increment in which it comes to
-!> turn by far more is made again on the finer mesh. Elements of a sheet that yields in compression,
-!> and that is not held on both faces, are divided if they are too long for its wrinkles.
+!> depth that is reported, as the exact surfaces of the tools tell: later the forces would change,
+!> as the length of a chord is not that of its arc. What of a tool the sheet can meet soon is near
+!> and has nearly the direction of the sheet, which must rotate to lie on the rest. As soon as an
+!> element would meet such a radius in the next part of the travel, all that would in a longer part
+!> are divided, so that the mesh changes a few times only. Where the sheet turns by more than the
+!> angle without a tool, as where it bends freely, it is divided too; an increment in which it comes
+!> to turn by far more is made again on the finer mesh. Elements of a sheet that yields in
+!> compression, and that is not held on both faces, are divided if they are too long for its
+!> wrinkles.
 !>
 !> Of several ranks every one refines the whole sheet, with the same marks, and then keeps its part
 !> of a new division.
@@ -152,9 +153,9 @@ contains
     end associate
   end subroutine find_marks
 
-  !> Return the turn of a tool above which an element is divided, rad: the angle of the input, or the
-  !> turn whose depth between the nodes, turn*length/8, is `notable_depth` once it is exceeded by
-  !> `over`.
+  !> Return the turn of a tool above which an element is divided, rad: the angle of the input, or
+  !> the turn whose depth between the nodes, turn*length/8, is `notable_depth` once it is exceeded
+  !> by `over`.
   elemental real(wp) function tool_limit(self, length, thickness) result(limit)
     class(adaptivity_t), intent(in) :: self
     !> Mean edge of the element, and thickness of the sheet, mm.

@@ -240,8 +240,9 @@ contains
     type(model_t), intent(in) :: model
 
     mean_parts = 1.0_wp
-    if (allocated(model%level)) &
-        mean_parts = real(model%n_element, wp)/sum(0.25_wp**model%level)
+    if (allocated(model%level)) then
+      mean_parts = real(model%n_element, wp)/sum(0.25_wp**model%level)
+    end if
   end function mean_parts
 
 end module dd3_run_expected_mesh

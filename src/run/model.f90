@@ -36,6 +36,7 @@ module dd3_run_model
   use dd3_report_phase_warnings, only : end_notes, start_notes
   use dd3_run_adaptivity, only : adaptivity_t, most_returns, new_adaptivity
   use dd3_run_phase_closing, only : close_phase
+  use dd3_run_pin_load, only : observe_pins
   use dd3_run_thread_choice, only : new_thread_choice, thread_choice_t
   use dd3_settings_solver, only : solver_spec_t
   use dd3_system_system, only : new_system
@@ -212,6 +213,7 @@ contains
         call run_increment(run, model, error)
         call note_solution(run, model, log)
         if (committed%increment > done) then
+          call observe_pins(case, model, committed, run%summary%phase(number)%closing%pin)
           call write_increment(run, model, next_output, log, late)
           call keep_first(error, late)
         end if
@@ -380,15 +382,18 @@ contains
         began = wall_time()
         processor = processor_time()
         again = .false.
-        if (predicted .and. phase%newton%cutback .and. attempt%verdict%outcome == verdict_retry) &
-            call cut_back(attempt, again)
+        if (predicted .and. phase%newton%cutback &
+            .and. attempt%verdict%outcome == verdict_retry) then
+          call cut_back(attempt, again)
+        end if
         if (attempt%verdict%outcome == verdict_converged) then
           call return_to_until(attempt, until_fraction(phase, run%committed, run%trial), again)
           if (again) row%reason = cause_text(verdict_t(cause=cause_beyond_until), "")
         end if
         if (again) again = makes_progress(attempt, stepper%prediction%progress)
-        if (attempt%verdict%outcome == verdict_converged .and. .not. again) &
-            call run%adaptivity%judge(model, run%trial, too_late)
+        if (attempt%verdict%outcome == verdict_converged .and. .not. again) then
+          call run%adaptivity%judge(model, run%trial, too_late)
+        end if
         if (too_late) row%outcome = "refined"
         if (again) row%outcome = "retry"
         call run%records%add_attempt(row, error)

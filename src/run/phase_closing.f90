@@ -8,6 +8,7 @@ module dd3_run_phase_closing
   use dd3_output_run_summary, only : run_summary_t
   use dd3_report_closing, only : measure_closing
   use dd3_report_closing_notes, only : add_closing_notes
+  use dd3_run_pin_load, only : add_pin_notes, observe_pins
   use dd3_run_support_load, only : add_support_note, find_support
   implicit none
   private
@@ -31,6 +32,9 @@ contains
       call find_support(case, model, state, closing%support)
       call add_closing_notes(model, state, closing, before, notes)
       call add_support_note(model, state, closing%support, notes)
+      ! A phase that a restart continues at its end has no increment.
+      call observe_pins(case, model, state, closing%pin)
+      call add_pin_notes(model, state, closing%pin, notes)
     end associate
   end subroutine close_phase
 

@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Load on supports that only hold a free sheet in its place. A support of *BOUNDARY, or of a phase
 !> that displaces nodes by zero, counts as one of these if it has few columns of nodes and does not
-!> hold all nodes of a plane, as one of symmetry or one at the end of a strip does. Tools should
-!> carry what forms the sheet, not it.
+!> hold all nodes of a plane, as one of symmetry or one at the end of a strip does, and is no pin.
+!> Tools should carry what forms the sheet, not it.
 module dd3_run_support_load
   use dd3_base_kinds, only : wp
   use dd3_base_message, only : message_list_t
@@ -15,7 +15,7 @@ module dd3_run_support_load
   use dd3_output_closing, only : support_t
   implicit none
   private
-  public :: add_support_note, find_support
+  public :: add_support_note, find_support, nodes_of
 
   !> Largest number of columns: three hold a rigid body.
   integer, parameter :: few = 3
@@ -74,12 +74,14 @@ contains
 
     integer :: i, k, n
 
-    n = size(case%boundary)
-    allocate (spec(n + sum([(size(case%phase(i)%displace), i=1, phase)])))
-    do i = 1, n
-      spec(i)%name = case%boundary(i)%source%called()
-      spec(i)%set = case%boundary(i)%set
-      spec(i)%fix = case%boundary(i)%fix
+    n = 0
+    allocate (spec(size(case%boundary) + sum([(size(case%phase(i)%displace), i=1, phase)])))
+    do i = 1, size(case%boundary)
+      if (case%boundary(i)%pin > 0.0_wp) cycle
+      n = n + 1
+      spec(n)%name = case%boundary(i)%source%called()
+      spec(n)%set = case%boundary(i)%set
+      spec(n)%fix = case%boundary(i)%fix
     end do
     do i = 1, phase
       do k = 1, size(case%phase(i)%displace)

@@ -4,7 +4,7 @@ module dd3_run_file_closing
   use dd3_base_json, only : json_t
   use dd3_base_text, only : axis_name
   use dd3_model_model, only : model_t
-  use dd3_output_closing, only : closing_t, place_t, support_t
+  use dd3_output_closing, only : closing_t, pin_t, place_t, support_t
   use dd3_report_attempt_report, only : tool_name
   implicit none
   private
@@ -51,8 +51,30 @@ contains
     end do
     call json%end_array()
     call add_support(json, model, closing%support)
+    call add_pins(json, closing%pin)
     call json%end_object()
   end subroutine add_closing
+
+  !> Add the locating pins.
+  subroutine add_pins(json, pin)
+    type(json_t), intent(inout) :: json
+    type(pin_t), intent(in) :: pin(:)
+
+    integer :: i
+
+    call json%begin_array("pins")
+    do i = 1, size(pin)
+      call json%begin_object("", flat=.true.)
+      call json%add("name", pin(i)%name)
+      call json%add("diameter", pin(i)%diameter)
+      call json%add("force", pin(i)%force)
+      call json%add("thickness", pin(i)%thickness)
+      call json%add("bearing_pressure", pin(i)%pressure())
+      call json%add("yield_stress", pin(i)%flow_stress)
+      call json%end_object()
+    end do
+    call json%end_array()
+  end subroutine add_pins
 
   !> Add a place; null if there is none.
   subroutine add_place(json, model, name, place)

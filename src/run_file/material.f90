@@ -8,7 +8,8 @@ module dd3_run_file_material
   use dd3_input_case, only : case_t, law_spec_t, point_spec_t
   use dd3_input_table, only : find_key
   use dd3_laws_choice, only : choose_law
-  use dd3_material_check, only : describe_laws, law_backstress, law_hardening, law_yield
+  use dd3_material_check, only : describe_laws, law_backstress, law_hardening, law_modulus, &
+      law_yield
   use dd3_material_description, only : description_t, law_choice_t
   use dd3_model_model, only : model_t
   use dd3_run_file_input, only : add_location
@@ -37,10 +38,16 @@ contains
         call add_law(json, "hardening", law_hardening, material%hardening)
         call json%begin_array("backstress")
         do i = 1, size(material%backstress)
-          if (.not. same_name(material%backstress(i)%name, "none")) &
-              call add_law(json, "", law_backstress, material%backstress(i))
+          if (.not. same_name(material%backstress(i)%name, "none")) then
+            call add_law(json, "", law_backstress, material%backstress(i))
+          end if
         end do
         call json%end_array()
+        if (same_name(material%modulus%name, "none")) then
+          call json%add_null("modulus")
+        else
+          call add_law(json, "modulus", law_modulus, material%modulus)
+        end if
         call json%add("rolling_direction", model%axes(:, 1, m))
         call json%add("normal_direction", model%axes(:, 3, m))
         n = 0

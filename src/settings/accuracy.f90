@@ -102,6 +102,8 @@ contains
       case ("r_max")
         value = level%r_max
         divisor = 1.0_wp
+      case default
+        value = 0.0_wp
     end select
     text = "default: "//trim(level(1)%name)//" "//to_text(value(1))
     do i = 2, size(level)

@@ -161,10 +161,11 @@ contains
         rolling = source%numbers("rolling_direction")
         angle = degrees*asin(min(1.0_wp, abs(dot_product(rolling, model%axes(:, 3, m)))/ &
             norm2(rolling)))
-        if (angle > largest_angle .and. source%given("rolling_direction")) &
-            call warnings%add_new("W020", "rolling_direction of material '"//source%called()// &
+        if (angle > largest_angle .and. source%given("rolling_direction")) then
+          call warnings%add_new("W020", "rolling_direction of material '"//source%called()// &
             "' points out of the sheet by "//to_text(angle, 3)// &
             " degrees; its projection is taken", source%at("rolling_direction"))
+        end if
       end associate
     end do
   end subroutine normal_warnings

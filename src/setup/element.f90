@@ -34,8 +34,9 @@ contains
     type(error_t), allocatable :: error
     integer :: i
 
-    if (size(case%start) > 0 .and. allocated(sheet%element)) &
-        call new_element(model%element, sheet%element, error, sheet%thickness_points)
+    if (size(case%start) > 0 .and. allocated(sheet%element)) then
+      call new_element(model%element, sheet%element, error, sheet%thickness_points)
+    end if
     do i = 1, size(case%blank)
       associate (blank => case%blank(i))
         if (blank%element /= "") then

@@ -53,6 +53,9 @@ contains
       call material%laws%backstress(i)%law%describe(description)
       text = text//source_line(description)
     end do
+    if (.not. material%laws%softens) return
+    call material%laws%modulus%law%describe(description)
+    text = text//source_line(description)
   end function law_sources
 
   !> Return the line of one law.

@@ -48,8 +48,8 @@ contains
   end subroutine new_model
 
   !> Build a model anew on another sheet, at any state of a run, not divided among the ranks. It may
-  !> be used if the list holds no error. The sheet has its positions at the start of the job, and all
-  !> node sets of the model, those of the sheet itself first.
+  !> be used if the list holds no error. The sheet has its positions at the start of the job, and
+  !> all node sets of the model, those of the sheet itself first.
   subroutine rebuild_model(model, case, sheet, errors)
     !> Built from the same case.
     type(model_t), intent(inout) :: model
@@ -88,8 +88,9 @@ contains
         if (case%trim(i)%source%valid) call read_curves(curve, case%trim(i), errors)
       end do
       if (model%element%n_node == 0 .or. size(case%mesh) /= 1) return
-      if (case%mesh(1)%source%has("file")) &
-          call new_inp_mesh(mesh, case%mesh(1), model%element%node, errors)
+      if (case%mesh(1)%source%has("file")) then
+        call new_inp_mesh(mesh, case%mesh(1), model%element%node, errors)
+      end if
       return
     end if
     call new_variables(model%internal_variable, model%material)

@@ -26,6 +26,7 @@ module dd3_setup_on_sheet
   use dd3_setup_drawbeads, only : new_drawbeads
   use dd3_setup_held_loads, only : check_loads
   use dd3_setup_phases, only : new_phases
+  use dd3_setup_pins, only : check_pins
   use dd3_sheet_sheet, only : sheet_t
   implicit none
   private
@@ -68,6 +69,7 @@ contains
     if (.not. rebuilt) then
       model%undivided_length = undivided_length(model)
       call set_axes(model, case, errors)
+      call check_pins(model, case, mesh, errors)
     end if
     if (errors%count > 0) return
     call find_candidates(model, case, mesh, errors)
@@ -131,8 +133,9 @@ contains
     call follow_parents(model, model%x0)
     call new_sheet_faces(model%face, model%element, mesh%connectivity)
     call remove_inner_faces(model)
-    if (model%element%n_enhanced > 0) &
-        model%element%stacked = any([(all(model%column(:, i) /= i), i=1, model%n_node)])
+    if (model%element%n_enhanced > 0) then
+      model%element%stacked = any([(all(model%column(:, i) /= i), i=1, model%n_node)])
+    end if
     call set_thickness(model, mesh%thickness)
     model%tolerance = new_tolerances(model%thickness, mesh%x)
     associate (element => model%element)

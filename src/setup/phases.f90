@@ -128,6 +128,7 @@ contains
 
     phase%name = spec%name
     phase%control = spec%control
+    phase%keep = spec%keep
     phase%limits = spec%limits
     phase%newton = spec%newton
     phase%until = spec%until

@@ -76,9 +76,9 @@ contains
           "formulation = compliant, or adaptive = 0", code="E148")
     else if (allocated(mesh%bound) .and. mixed) then
       i = findloc([(case%phase(i)%contact%mixed, i=1, size(case%phase))], .true., dim=1)
-      call errors%push_input(case%phase(i)%source%opened, "the sheet has nodes in the middle of "// &
-          "edges of larger elements, and the mixed formulation of the contact has an equation "// &
-          "at each node", "formulation = compliant", code="E148")
+      call errors%push_input(case%phase(i)%source%opened, "the sheet has nodes in the middle "// &
+          "of edges of larger elements, and the mixed formulation of the contact has an "// &
+          "equation at each node", "formulation = compliant", code="E148")
     end if
   end subroutine check_refinement
 

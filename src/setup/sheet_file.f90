@@ -35,7 +35,8 @@ contains
     inquire (file=path, exist=there)
     if (.not. there) then
       call report("'"//path//"' does not exist", "the folder of the results of a run with a "// &
-          "restart file (restart = off in *OUTPUT writes none)")
+          "restart file (restart = off in *OUTPUT writes none), or in it that of a phase with "// &
+          "keep = on")
       return
     end if
     call start_hdf5(ok)

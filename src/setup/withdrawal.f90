@@ -37,9 +37,9 @@ contains
     path = sign(maxval(maxval(x, dim=2) - minval(x, dim=2)), dot_product(direction, side))*direction
   end function withdrawal
 
-  !> Return the side of the sheet on which a tool lies, a unit vector: the mean outward normal of the
-  !> faces that it may touch or, where these point to all sides, the direction from the middle of
-  !> the sheet to that of the tool.
+  !> Return the side of the sheet on which a tool lies, a unit vector: the mean outward normal of
+  !> the faces that it may touch or, where these point to all sides, the direction from the middle
+  !> of the sheet to that of the tool.
   function side_of(model, tool, x) result(side)
     type(model_t), intent(in) :: model
     integer, intent(in) :: tool

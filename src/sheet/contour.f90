@@ -28,14 +28,14 @@ contains
     real(wp), intent(in) :: initial(:, :)
     type(loop_t), allocatable, intent(out) :: contour(:)
 
-    logical :: open(4, cut%grid%n_quad)
+    logical :: pending(4, cut%grid%n_quad)
     type(loop_t) :: line
     integer :: edge, quad, turn
 
     ! Edges on which lines enter a quadrilateral and have not been followed.
     do quad = 1, cut%grid%n_quad
       associate (here => stays(cut%grid%corner(:, quad)))
-        open(:, quad) = here .and. .not. cshift(here, 1)
+        pending(:, quad) = here .and. .not. cshift(here, 1)
       end associate
     end do
     allocate (contour(0))
@@ -43,9 +43,9 @@ contains
     do turn = 1, 2
       do quad = 1, cut%grid%n_quad
         do edge = 1, 4
-          if (.not. open(edge, quad)) cycle
+          if (.not. pending(edge, quad)) cycle
           if (turn == 1 .and. cut%grid%neighbour(edge, quad) > 0) cycle
-          call follow(cut, stays, initial, quad, edge, open, line)
+          call follow(cut, stays, initial, quad, edge, pending, line)
           contour = [contour, line]
         end do
       end do
@@ -53,12 +53,12 @@ contains
   end subroutine find_contours
 
   !> Follow a line from an edge on.
-  subroutine follow(cut, stays, initial, first_quad, first_edge, open, line)
+  subroutine follow(cut, stays, initial, first_quad, first_edge, pending, line)
     type(cut_function_t), intent(in) :: cut
     logical, intent(in) :: stays(:)
     real(wp), intent(in) :: initial(:, :)
     integer, intent(in) :: first_quad, first_edge
-    logical, intent(inout) :: open(:, :)
+    logical, intent(inout) :: pending(:, :)
     type(loop_t), intent(out) :: line
 
     real(wp), allocatable :: point(:, :), larger(:, :)
@@ -71,7 +71,7 @@ contains
     allocate (point(2, 64*n_part), corner(64*n_part))
     n = 0
     do
-      open(edge, quad) = .false.
+      pending(edge, quad) = .false.
       call cross_quad(cut, stays, quad, edge, before, part, kink)
       if (n + n_part + 1 > size(corner)) then
         allocate (larger(2, 2*size(corner)), more(2*size(corner)))
@@ -91,7 +91,7 @@ contains
       edge = edge_between(cut, i, quad)
       quad = i
       line%closed = quad == first_quad .and. edge == first_edge
-      if (line%closed .or. .not. open(edge, quad)) exit
+      if (line%closed .or. .not. pending(edge, quad)) exit
     end do
     if (.not. line%closed) n = n + 1
     line%point = point(:, :n)

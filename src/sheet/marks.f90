@@ -14,8 +14,8 @@ module dd3_sheet_marks
 
 contains
 
-  !> Complete the marks of elements that are asked to be divided: all of a quadrilateral, and what the
-  !> balance of the levels needs. Those of the highest level lose their marks.
+  !> Complete the marks of elements that are asked to be divided: all of a quadrilateral, and what
+  !> the balance of the levels needs. Those of the highest level lose their marks.
   pure subroutine mark_balanced(mesh, grid, most_level, marked)
     type(mesh_t), intent(in) :: mesh
     !> Grid of the mesh.
@@ -47,8 +47,8 @@ contains
   end function quad_levels
 
   !> Find the levels of a mesh with bound nodes whose levels are not known: across a bound column
-  !> they differ by one, across other edges they are the same; the lowest one is 0. They stay unknown
-  !> where the mesh was not made by divisions.
+  !> they differ by one, across other edges they are the same; the lowest one is 0. They stay
+  !> unknown where the mesh was not made by divisions.
   pure subroutine find_levels(mesh, grid)
     type(mesh_t), intent(inout) :: mesh
     !> Grid of the mesh.

@@ -161,8 +161,9 @@ contains
       do i = 1, n
         associate (a => loop(k)%point(:, i), b => loop(k)%point(:, mod(i, n) + 1))
           if ((a(2) > point(2)) .eqv. (b(2) > point(2))) cycle
-          if (point(1) < a(1) + (point(2) - a(2))/(b(2) - a(2))*(b(1) - a(1))) &
-              is_inside = .not. is_inside
+          if (point(1) < a(1) + (point(2) - a(2))/(b(2) - a(2))*(b(1) - a(1))) then
+            is_inside = .not. is_inside
+          end if
         end associate
       end do
     end do

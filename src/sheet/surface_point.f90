@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Point of the sheet's surface, as those at which the law of contact holds. It is a node, or lies on
-!> a face or an edge between nodes, on the surface
+!> Point of the sheet's surface, as those at which the law of contact holds. It is a node, or lies
+!> on a face or an edge between nodes, on the surface
 !>     x = sum_a N_a x_a + sum_a (v_a.n_a) n_a,    v_a = sum_b s_ab x_b,
 !> with the bilinear functions N_a of the face and the directions n_a of the columns of nodes from
 !> the opposite face of the sheet. The second sum bends the face: each of its edges is the cubic

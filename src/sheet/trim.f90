@@ -110,9 +110,9 @@ contains
       return
     end if
     if (allocated(sheet%mesh%bound) .and. .not. allocated(sheet%mesh%level)) then
-      call errors%push_input(spec%source%opened, "a sheet with bound nodes that was not made by "// &
-          "divisions of elements into four cannot be cut", "elements with whole faces in common, "// &
-          "or each divided into four", code="E153")
+      call errors%push_input(spec%source%opened, "a sheet with bound nodes that was not made "// &
+          "by divisions of elements into four cannot be cut", "elements with whole faces in "// &
+          "common, or each divided into four", code="E153")
       return
     end if
     cut%plane = sheet%mesh%x(:2, cut%grid%node(0, :))

@@ -38,8 +38,9 @@ contains
     do i = 1, model%n_bound
       call model%bound_point(i)%gradient(x, b)
       call give_row(matrix, rhs, model%bound(1, i), model%bound_point(i), b)
-      if (holds_row(matrix, model%bound(1, i))) &
-          call add_change(matrix, model%bound_point(i), x, force(:, i))
+      if (holds_row(matrix, model%bound(1, i))) then
+        call add_change(matrix, model%bound_point(i), x, force(:, i))
+      end if
     end do
   end subroutine eliminate_bound_nodes
 

@@ -69,8 +69,10 @@ contains
       touching = .false.
       do c = 1, model%n_contact
         if (committed%contact%status(c) == status_gap) cycle
-        if (norm2(committed%contact%lambda(:, c)) <= round_off*contact_penalty(model, phase, c)) &
-            cycle
+        if (norm2(committed%contact%lambda(:, c)) &
+            <= round_off*contact_penalty(model, phase, c)) then
+          cycle
+        end if
         touching(committed%contact%tool(c)) = .true.
       end do
       touching = [(any_rank(touching(tool)), tool=1, model%n_tool)]

@@ -17,8 +17,8 @@ module dd3_system_formulation
 
   !> The formulation.
   type, abstract :: formulation_t
-    !> Whether the corrector may solve for a part of the nodes alone, and whether it balances pressed
-    !> tools by their motion.
+    !> Whether the corrector may solve for a part of the nodes alone, and whether it balances
+    !> pressed tools by their motion.
     logical :: eliminates = .false., balances_tools = .false.
   contains
     procedure(evaluate_interface), deferred :: evaluate

@@ -81,7 +81,8 @@ contains
       system%enhanced%unfollowed_square = 0.0_wp
     end if
     !$omp parallel default(shared) private(mine, colour, k, i, e, batch, thread) &
-    !$omp& num_threads(threads_for(size(system%batches%element)*model%element%n_point, least_points))
+    !$omp& num_threads(threads_for(size(system%batches%element)*model%element%n_point, &
+    !$omp& least_points))
     thread = 1
     !$ thread = omp_get_thread_num() + 1
     do colour = 1, size(system%batches%colour_start) - 1
@@ -95,15 +96,17 @@ contains
             call update_element(model, committed, trial, e, system%element(thread), &
                 system%tangent(:, :, :, e), mine)
             system%enhanced%residual(:, e) = system%element(thread)%enhanced_force
-            if (mine%outcome == verdict_converged) &
-                call add_forces(model, e, system%element(thread)%force, trial%sheet%internal_force)
+            if (mine%outcome == verdict_converged) then
+              call add_forces(model, e, system%element(thread)%force, trial%sheet%internal_force)
+            end if
           else
             call set_element(model, e, system%element(thread), committed, trial)
           end if
           if (mine%outcome /= verdict_converged) then
             !$omp critical (failed_element)
-            if (verdict%outcome == verdict_converged .or. mine%element < verdict%element) &
-                verdict = mine
+            if (verdict%outcome == verdict_converged .or. mine%element < verdict%element) then
+              verdict = mine
+            end if
             !$omp end critical (failed_element)
           else if (with_stiffness) then
             call add_stiffness(system, model, e, system%element(thread))

@@ -15,7 +15,8 @@ module dd3_system_linear_problem
     real(wp), allocatable :: enhanced(:, :)
     !> Contact forces, `(3, n_contact)`, N.
     real(wp), allocatable :: lambda(:, :)
-    !> Displacements of the tools, `(3, n_tool)`, mm, and the rotation vectors of those that tilt, rad.
+    !> Displacements of the tools, `(3, n_tool)`, mm, and the rotation vectors of those that tilt,
+    !> rad.
     real(wp), allocatable :: tool(:, :), tilt(:, :)
   contains
     procedure :: scaled
@@ -31,7 +32,8 @@ module dd3_system_linear_problem
     !> Residual r_A of the equilibrium of the nodes, contact forces included, `(3, n_node)`, N, and
     !> that with the forces F_equ of the contact law; of several ranks each has those of its nodes.
     real(wp), allocatable :: residual(:, :), law_residual(:, :)
-    !> Forces on the bound nodes that their parents carry, contact forces included, `(3, n_bound)`, N.
+    !> Forces on the bound nodes that their parents carry, contact forces included, `(3, n_bound)`,
+    !> N.
     real(wp), allocatable :: bound_force(:, :)
     !> Residual F_equ - lambda of the contact law at the candidates, `(3, n_contact)`, N.
     real(wp), allocatable :: contact_residual(:, :)

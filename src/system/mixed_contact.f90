@@ -137,8 +137,8 @@ contains
   end function candidate_penalty
 
   !> Evaluate the points at the committed state: a slipping node lies on the cone, where round-off
-  !> would make it stick. If a tool has no contact, the nodes within `touch` of it stick without being
-  !> pulled, unless it moves away from them. A gap that has closed resists without friction.
+  !> would make it stick. If a tool has no contact, the nodes within `touch` of it stick without
+  !> being pulled, unless it moves away from them. A gap that has closed resists without friction.
   subroutine predict(self, contact, model, committed, touching)
     class(mixed_contact_t), intent(in) :: self
     type(contact_work_t), intent(inout) :: contact
@@ -185,8 +185,9 @@ contains
           committed%start%tool_displacement) + contact%turning(:, c), hit%normal) < 0.0_wp
       if (.not. touching(tool)) then
         contact%status(c) = status_gap
-        if (hit%distance <= model%tolerance%touch .and. .not. leaving) &
-            contact%status(c) = status_stick
+        if (hit%distance <= model%tolerance%touch .and. .not. leaving) then
+          contact%status(c) = status_stick
+        end if
       else if (contact%status(c) == status_gap .and. .not. leaving .and. hit%distance < 0.0_wp) then
         contact%status(c) = status_slip
         friction = 0.0_wp

@@ -6,11 +6,11 @@
 !> displacement B du, dw: the tool's),
 !>     dlambda = (I - E)^-1 [F - lambda + D (B du - dw)],
 !>     [K + B^T (I - E)^-1 D B + G] du = -r - B^T (I - E)^-1 (F - lambda - D dw),
-!> r with B^T lambda in it. G is the derivative of B^T F at a constant F. The motion of a pressed tool
-!> is dw = A dq, with the unknowns q, A and the derivatives S and P of `pressed_tools`: its columns of
-!> the rows of the nodes are B^T (S - (I - E)^-1 D A), its rows [A^T (I - E)^-1 D + P^T] B. The slip
-!> does not turn with the tool: a point that has moved by h along the normal n in the increment has,
-!> as the tool tilts by t, the further slip -h t x n.
+!> r with B^T lambda in it. G is the derivative of B^T F at a constant F. The motion of a pressed
+!> tool is dw = A dq, with the unknowns q, A and the derivatives S and P of `pressed_tools`: its
+!> columns of the rows of the nodes are B^T (S - (I - E)^-1 D A), its rows [A^T (I - E)^-1 D + P^T]
+!> B. The slip does not turn with the tool: a point that has moved by h along the normal n in the
+!> increment has, as the tool tilts by t, the further slip -h t x n.
 module dd3_system_point_rows
   use dd3_base_kinds, only : wp
   use dd3_contact_operator, only : status_gap
@@ -76,8 +76,8 @@ contains
     real(wp), intent(in) :: motion(3)
     !> Positions of the nodes of the sheet, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
-    !> Positions of the blocks of elements, and its element among them. A point at a node needs none:
-    !> its element may belong to another rank.
+    !> Positions of the blocks of elements, and its element among them. A point at a node needs
+    !> none: its element may belong to another rank.
     integer, intent(in) :: position(:, :, :), e
     type(block_matrix_t), intent(inout) :: matrix
     real(wp), intent(inout) :: rhs(:)

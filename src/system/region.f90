@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Region of the sheet: the system of a few free nodes, with their elements and contact points. All
-!> other nodes and the tools are held: their block rows are not solved. It has its own matrix, linear
-!> problem and solver; tangents, workspaces, enhanced strains and contact are those of the sheet, lent
-!> while it is in use.
+!> other nodes and the tools are held: their block rows are not solved. It has its own matrix,
+!> linear problem and solver; tangents, workspaces, enhanced strains and contact are those of the
+!> sheet, lent while it is in use.
 !>
 !> Of several ranks each evaluates its elements and points; matrix and forces are summed, and all
 !> get the solution of one.

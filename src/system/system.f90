@@ -41,12 +41,13 @@ module dd3_system_system
     !> Matrix of the linear system, with the rows that this rank holds: sheet and terms add to it,
     !> the contact, the pressed tools and the supports complete it (`reduce`).
     type(block_matrix_t) :: matrix
-    !> Sums of the squares in the columns of nodes of the last stiffness, over the rows of this rank,
-    !> with those of the enhanced parameters, `(3, n_node)`, (N/mm)2.
+    !> Sums of the squares in the columns of nodes of the last stiffness, over the rows of this
+    !> rank, with those of the enhanced parameters, `(3, n_node)`, (N/mm)2.
     real(wp), allocatable :: column_square(:, :)
     type(partition_t) :: partition
     !> Position of the blocks of an element of the part in the matrix, `(n_element_node,
-    !> n_element_node, n_element)`: row node, column node; 0 for elements that are not in the system.
+    !> n_element_node, n_element)`: row node, column node; 0 for elements that are not in the
+    !> system.
     integer, allocatable :: position(:, :, :)
     !> Tangent of the material at the points, MPa, Kelvin, material frame, `(6, 6, n_point,
     !> n_element)`.

@@ -49,8 +49,8 @@ contains
     end associate
   end subroutine start_tool_rows
 
-  !> Complete the rows by the support of the tools against tilt, and prescribe the unknowns that have
-  !> no balance. A pressed tool without contact has a prescribed displacement.
+  !> Complete the rows by the support of the tools against tilt, and prescribe the unknowns that
+  !> have no balance. A pressed tool without contact has a prescribed displacement.
   subroutine finish_tool_rows(system, model, phase)
     type(system_t), intent(inout) :: system
     type(model_t), intent(in) :: model

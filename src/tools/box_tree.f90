@@ -186,8 +186,9 @@ contains
       half(2) = range_t(child + 1, middle + 1, now%last, &
           node_distance(tree%node(child + 1)%box, walk%x))
       nearer = merge(1, 2, half(1)%distance < half(2)%distance)
-      if (abs(half(1)%distance - half(2)%distance) <= 0.0_wp) &
-          nearer = nearer_centre(tree, child, walk%x)
+      if (abs(half(1)%distance - half(2)%distance) <= 0.0_wp) then
+        nearer = nearer_centre(tree, child, walk%x)
+      end if
       walk%stack(walk%depth + 1) = half(3 - nearer)
       walk%stack(walk%depth + 2) = half(nearer)
       walk%depth = walk%depth + 2

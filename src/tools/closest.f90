@@ -70,8 +70,9 @@ contains
     if (present(outward)) query%outward = outward
     call search(surface, query, hint, hit)
     if (.not. hit%found) return
-    if (.not. hit%border .and. query%border%reach > 0.0_wp) &
-        call round_kink(hit, surface, x, query%border)
+    if (.not. hit%border .and. query%border%reach > 0.0_wp) then
+      call round_kink(hit, surface, x, query%border)
+    end if
     hit%gap_gradient = hit%normal
     if (hit%border) call limit_turn(hit, surface%patch(hit%patch), x, query%border%turn)
   end subroutine find_contact

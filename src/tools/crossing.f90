@@ -189,8 +189,9 @@ contains
     at%second = second(:, i)
     at%leaving = at%normal([2, 3, 1])*at%first([3, 1, 2]) - at%normal([3, 1, 2])*at%first([2, 3, 1])
     at%leaving = at%leaving/max(norm2(at%leaving), tiny(1.0_wp))
-    if (dot_product(at%leaving, first(:, 3 - i)) > 0.0_wp .neqv. mod(e, 2) == 0) &
-        at%leaving = -at%leaving
+    if (dot_product(at%leaving, first(:, 3 - i)) > 0.0_wp .neqv. mod(e, 2) == 0) then
+      at%leaving = -at%leaving
+    end if
     at%stretch = max(0.0_wp, 1.0_wp + radius*dot_product(at%normal, at%second) &
         /max(dot_product(at%first, at%first), tiny(1.0_wp)))
   end function border_point

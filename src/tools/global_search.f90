@@ -181,8 +181,9 @@ contains
     call project_globally(surface%patch(k), query%x, [0.0_wp, 0.0_wp], [1.0_wp, 1.0_wp], projection)
     candidate%near = projection%distance
     candidate%distance = projection%distance
-    if (any(projection%active /= 0)) &
-        candidate%distance = projection%distance + edge_margin*surface%size
+    if (any(projection%active /= 0)) then
+      candidate%distance = projection%distance + edge_margin*surface%size
+    end if
     candidate%accepted = projection%distance <= limit
     if (.not. candidate%accepted) return
     associate (hit => candidate%hit)

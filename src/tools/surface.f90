@@ -8,7 +8,8 @@ module dd3_tools_surface
   use dd3_tools_oriented_box, only : new_oriented_box, oriented_box_t
   implicit none
   private
-  public :: surface_t, edge_t, border_edge_t, new_surface, join_patches, edge_parameters, edge_number, coincident
+  public :: surface_t, edge_t, border_edge_t, new_surface, join_patches, edge_parameters, &
+      edge_number, coincident
 
   !> Parameters at which two edges are compared.
   real(wp), parameter :: compared(5) = [0.0_wp, 0.25_wp, 0.5_wp, 0.75_wp, 1.0_wp]
@@ -165,8 +166,9 @@ contains
           [0.5_wp])
     end do
     call near_pairs(middle, tolerance, most_pairs*size(edge), pair)
-    if (size(pair, 2) > 0 .and. size(pair, 2) == most_pairs*size(edge)) &
-        self%crowded = (edge(most_frequent(pair, size(edge))) + 3)/4
+    if (size(pair, 2) > 0 .and. size(pair, 2) == most_pairs*size(edge)) then
+      self%crowded = (edge(most_frequent(pair, size(edge))) + 3)/4
+    end if
     do p = 1, size(pair, 2)
       i = (edge(pair(:, p)) + 3)/4
       k = modulo(edge(pair(:, p)) - 1, 4) + 1

@@ -53,8 +53,8 @@ contains
     hit%dnormal = placement%tensor_to_global(hit%dnormal)
   end subroutine find_on_tool
 
-  !> Find where an edge of the mesh crosses the border of a tool in its place, as `find_crossing` does
-  !> on its surface.
+  !> Find where an edge of the mesh crosses the border of a tool in its place, as `find_crossing`
+  !> does on its surface.
   pure subroutine find_crossing_on_tool(tool, placement, ends, outward, border, largest_gap, &
       crossing)
     type(tool_t), intent(in) :: tool

@@ -110,9 +110,10 @@ contains
     end do
   end function places_on_curve
 
-  !> Return the largest sum of the lengths of the vectors of a point within a distance of a place, or
-  !> of the lengths multiplied by a factor of their directions.
-  pure real(wp) function largest_within(self, x, distance, resolution, facing, frame) result(largest)
+  !> Return the largest sum of the lengths of the vectors of a point within a distance of a place,
+  !> or of the lengths multiplied by a factor of their directions.
+  pure real(wp) function largest_within(self, x, distance, resolution, facing, frame) &
+      result(largest)
     type(vector_tree_t), intent(in) :: self
     real(wp), intent(in) :: x(3)
     !> mm.
@@ -170,8 +171,9 @@ contains
     component = matmul(vector, frame)
     length = norm2(vector - component(3)*frame(:, 3))
     factor = 1.0_wp
-    if (length > upright*norm2(vector)) &
-        factor = length/max(length, abs(component(1)), abs(component(2)))
+    if (length > upright*norm2(vector)) then
+      factor = length/max(length, abs(component(1)), abs(component(2)))
+    end if
   end function factor_along
 
 end module dd3_tools_vector_tree

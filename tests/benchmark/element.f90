@@ -68,6 +68,8 @@ contains
             call add_element(matrix, element%n_node, position(:, :, 1), work%stiffness)
           case (5)
             call element%evaluate_rate(element, element%node, axes, work)
+          case default
+            error stop "no such measurement"
           end select
         end do
         best(k) = min(best(k), (wall_time() - start)/real(calls, wp)*1.0e6_wp)

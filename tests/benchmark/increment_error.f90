@@ -189,8 +189,9 @@ contains
       if (done) updated = difference(predicted, corrected, scale)
     end associate
     call accept_increment(model, trial, stepper, committed)
-    if (controls(committed)) &
-        call judge(controller, committed%progress - before%progress, linear%rms(1))
+    if (controls(committed)) then
+      call judge(controller, committed%progress - before%progress, linear%rms(1))
+    end if
     associate (attempt => stepper%attempt)
       write (*, '(a, ",", i0, ",", 2(es15.8, ","), 2(es11.4, ","), a, ",", 2(i0, ","), ' // &
           '2(es11.4, ","), i0, ",", 2(f6.4, ","), es14.7)', advance="no") &
@@ -384,8 +385,9 @@ contains
     changed = before%contact%status /= after%contact%status
     scale%changed = count(changed)
     do f = 1, size(model%contact_face)
-      if (any(changed(model%face_point(:, f)))) &
-          scale%in_set(:, model%face%element(model%contact_face(f)), 2:) = .false.
+      if (any(changed(model%face_point(:, f)))) then
+        scale%in_set(:, model%face%element(model%contact_face(f)), 2:) = .false.
+      end if
     end do
     scale%in_set(:, :, 3) = scale%in_set(:, :, 3) &
         .and. (before%sheet%plastic .eqv. after%sheet%plastic)

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Processor time and memory of reading a tool of many patches, and the time of closest-point queries on it. The
-!> tool is a wavy sheet of n x n patches of degrees 2 and 2 with common edges; its file is made if it
-!> is missing.
+!> Processor time and memory of reading a tool of many patches, and the time of closest-point
+!> queries on it. The tool is a wavy sheet of n x n patches of degrees 2 and 2 with common edges;
+!> its file is made if it is missing.
 !>
 !>     benchmark_tool_surface folder n
 !>
@@ -156,9 +156,9 @@ contains
     open (newunit=unit, file="/proc/self/status", action="read", iostat=status)
     do while (status == 0)
       read (unit, '(a)', iostat=status) line
-      if (line(:6) == "VmHWM:") text = trim(adjustl(line(7:)))
+      if (status == 0 .and. line(:6) == "VmHWM:") text = trim(adjustl(line(7:)))
     end do
-    close (unit, iostat=status)
+    close (unit)
   end function memory
 
 end program benchmark_tool_surface

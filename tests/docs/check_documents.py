@@ -31,7 +31,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
 FENCE = re.compile(r"^```\w*\n(.*?)^```", re.DOTALL | re.MULTILINE)
-GATHERED = {"yield": "yield_criteria.md", "hardening": "hardening_laws.md", "backstress": "hardening_laws.md"}
+GATHERED = {"yield": "yield_criteria.md", "hardening": "hardening_laws.md", "backstress": "hardening_laws.md",
+            "modulus": "hardening_laws.md"}
 LAW = re.compile(r"^## `(\w+) = law|^\| `(\w+)` \|", re.MULTILINE)
 PARAMETER = re.compile(r"^  (\S+) = (a \w.*?) \((\w.*)\)$", re.MULTILINE)
 BOUND = re.compile(r"[<>]=? ")

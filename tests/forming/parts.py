@@ -16,8 +16,7 @@ import numpy as np
 from dd3.errors import run
 from dd3.fields import Fields
 from dd3.programs import parser_of_runs
-from dd3.tools.blocks import lines_of
-from dd3.tools.surface import read_lines
+from dd3.tools.surface import points_on, read_patches
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests"))
@@ -52,19 +51,10 @@ def check_rail(options):
     assert np.abs(points - turned).max() < 0.02, np.abs(points - turned).max()
 
 
-def bernstein(degree, t):
-    """Return the Bernstein polynomials at places, (places, degree + 1)."""
-    return np.stack([math.comb(degree, i) * t**i * (1 - t)**(degree - i) for i in range(degree + 1)], axis=1)
-
-
 def places(path):
     """Return places on the patches of a file at equal parameters, (patches, v, u, 3), whatever their degrees."""
-    found, t = [], np.linspace(0, 1, 5)
-    for points, weights in read_lines([line.split() for line in lines_of(path)]):
-        v, u = (bernstein(number - 1, t) for number in weights.shape)
-        mean = np.einsum("ai,bj,ij->ab", v, u, weights)
-        found.append(np.einsum("ai,bj,ij,ijc->abc", v, u, weights, points) / mean[..., None])
-    return np.array(found)
+    t = np.linspace(0, 1, 5)
+    return np.array([points_on(points, weights, t, t) for points, weights in read_patches(path)])
 
 
 def faces(path):

@@ -23,6 +23,7 @@ from dd3.run import read_job
 DECK, REPORT, PICTURE = studies.paths("round_cup")
 BLANK, WALL = 79.375, 49.735  # radii of the blank and of the middle of the wall, mm
 ANGLES = np.arange(0, 91, 15)  # of the table, degrees from rolling
+CHORD = 0.2  # distance of new nodes of the rim, in the middle of chords, from its circle, at most, mm
 LEAST = 0.05  # rise above both neighbouring valleys that makes an ear, mm
 MATERIALS = {"Yld2004-18p": "aa2090_t3_yld2004", "Hill 1948": "aa2090_t3_hill48"}
 RUNS = [(f"{name} {core} x {ring}", material, f"{core} {ring} 1") for core, ring in ((6, 12), (8, 16), (12, 24))
@@ -34,9 +35,9 @@ class Cup:
 
     def __init__(self, folder, blank=BLANK):
         fields = Fields(folder)
-        start, now = fields.points(0), fields.points(fields.count - 1)
-        radius, last = np.hypot(start[:, 0], start[:, 1]), fields.count - 1
-        rim = np.flatnonzero(radius > blank - 0.01)
+        start, now = fields.initial(fields.last), fields.points(fields.last)
+        radius, last = np.hypot(start[:, 0], start[:, 1]), fields.last
+        rim = np.flatnonzero(radius > blank - CHORD)
         angle = np.degrees(np.arctan2(start[rim, 1], start[rim, 0])).round(6)
         self.angles, column = np.unique(angle, return_inverse=True)
         count = np.bincount(column)

@@ -43,7 +43,7 @@ class Umat:
         (folder / "materials.dat").write_text(text, encoding="utf-8")
         os.environ["DD3_MATERIALS"] = str(folder / "materials.dat")
         self.library, self.name = library, name.ljust(80).encode()
-        self.stress, self.tangent, self.state = np.zeros(6), np.zeros((6, 6), order="F"), np.zeros(20)
+        self.stress, self.tangent, self.state = np.zeros(6), np.zeros((6, 6), order="F"), np.zeros(64)
         self.smaller = 1.0
 
     def update(self, strain, shears=3):

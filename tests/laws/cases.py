@@ -45,6 +45,11 @@ CASES = (
     Case("cyclic shear", (HILL, VOCE, BACK), ("xx", "yy"), (((0.3, -0.3), 30), ((-0.5, 0.5), 50)), 45.0),
 )
 
+# Yoshida and Uemori's law with a falling modulus; not in the table of calculix.py.
+TWO_SURFACES = Case("two surfaces", (HILL, "hardening = yoshida_uemori Y=124 B=168 C=200 m=12 b_sat=60 Rsat=190 h=0.5",
+                                     "modulus = chord Ea=1.63e5 xi=30.8"), ("xx",),
+                    (((0.3,), 30), ((-0.5,), 50), ((0.4,), 40)))
+
 DECK = """*BLANK cube
   size = {size} {size} {size}
   divisions = 1 1 1

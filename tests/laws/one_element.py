@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 from calls import Material, Umat
-from cases import CASES, SIZE, deck, displacements
+from cases import CASES, SIZE, TWO_SURFACES, deck, displacements
 
 from dd3.programs import find_program, launch
 from dd3.tables import read_table
@@ -178,7 +178,7 @@ def main():
         folder.mkdir(parents=True, exist_ok=True)
         check_umat(library, Path(name))
         check_threads(library)
-        for case in CASES:
+        for case in (*CASES, TWO_SURFACES):
             expected = run_program(options.program, case, folder)
             found = {"library": by_library(case, Material(library, case.material()))}
             # A material keeps its name, hence one more name for each case.

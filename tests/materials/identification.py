@@ -60,6 +60,7 @@ TRUE_SETS = (
 LAWS = ("linear Y0=200 H=400", "swift K=565 e0=0.007 n=0.26", "voce Y0=150 Rsat=200 CR=12",
         "ludwik Y0=150 K=450 n=0.5", "hockett_sherby Y0=150 Ysat=420 N=6 q=0.75",
         "swift_voce alpha=0.4 K=600 e0=0.005 n=0.25 Y0=180 Rsat=170 CR=15")
+TWO_SURFACES = "yoshida_uemori Y=130 B=180 C=300 m=12 b_sat=40 Rsat=160 h=0.4"
 REVERSAL = "voce Y0=200 Rsat=100 CR=10\n  backstress = lemaitre_chaboche CX=50 Xsat=60"
 ALLOY = "\n".join(["# AA2090-T3", *(f"stress {15 * i} {value}" for i, value in enumerate(
     (1, .9605, .9102, .8114, .8096, .8815, .9102))), *(f"r {15 * i} {value}" for i, value in enumerate(
@@ -287,6 +288,16 @@ def check_reversal(trial):
     trial.expect(Path("found.png").exists() and Path("found.png").stat().st_size > 1e4, "no picture")
 
 
+def check_two_surfaces(trial):
+    """Check a law with a back-stress of its own, from tension, compression and tension."""
+    write_curve(curve(trial, TWO_SURFACES, [(0.06, 120), (-0.06, 240), (0.06, 240)])[4::5])
+    _, rows, text = trial.fit("--hardening", "yoshida_uemori", "--curve", "curve.csv", "--starts", "1")
+    trial.expect(largest(rows) < 1.0, f"two surfaces: {text}")
+    write_curve(curve(trial, TWO_SURFACES, [(0.1, 100)]))
+    said = trial.call("--hardening", "yoshida_uemori", "--curve", "curve.csv")
+    trial.expect("no back-stress can be identified" in str(said), f"two surfaces without reversal: {said}")
+
+
 def check_few_rows(trial):
     """Check the notes if a curve has fewer rows than there are parameters, and if the fit is poor."""
     write_curve([(0.01, 200), (0.05, 250), (0.1, 280), (0.09, -100), (0.05, -250), (0, -290)])
@@ -311,8 +322,8 @@ def main():
         os.chdir(folder)
         for name, text in FILES.items():
             Path(name).write_text(text, encoding="utf-8")
-        for check in (check_mistakes, check_steel, check_true, check_hardening, check_reversal, check_few_rows,
-                      check_alloy):
+        for check in (check_mistakes, check_steel, check_true, check_hardening, check_reversal, check_two_surfaces,
+                      check_few_rows, check_alloy):
             try:
                 check(trial)
             except Problem as problem:

@@ -127,11 +127,13 @@ def distance(one, other):
 def released(bench):
     """Compare the release by another run with that of one run."""
     drawn(bench)
-    whole = bench.run("whole", forming() + UNLOAD, SETTINGS)
+    check("*PHASE draw\n" in forming(), f"{DRAW}: no phase draw")
+    whole = bench.run("whole", forming().replace("*PHASE draw\n", "*PHASE draw\n  keep = on\n") + UNLOAD, SETTINGS)
     expected, first = np.asarray(dd3.open(whole.folder).fields[-1].points), None
     springback = distance(np.asarray(dd3.open(bench.work / "draw.out").fields[-1].points), expected)
-    for name, place in (("released", ""), ("moved", "  turn = 3 0 5  0 1 0  180\n  move = 1 0 3\n")):
-        run = bench.run(name, f"*START\n  from = draw.out\n{place}{MATERIAL}{SUPPORTS}{UNLOAD}")
+    for name, start, place in (("released", "draw.out", ""), ("kept", "whole.out/draw", ""),
+                               ("moved", "draw.out", "  turn = 3 0 5  0 1 0  180\n  move = 1 0 3\n")):
+        run = bench.run(name, f"*START\n  from = {start}\n{place}{MATERIAL}{SUPPORTS}{UNLOAD}")
         check("N106" in {message["code"] for message in run.job["notes"]}, f"{name}: no N106")
         found = np.asarray(dd3.open(run.folder).fields[-1].points)
         first = found if first is None else first

@@ -75,6 +75,8 @@ contains
       reals_hold = expected >= actual
     case (compare_relativelyequal)
       if (abs(expected) > 0.0_dp) reals_hold = near(expected, actual, tolerance*abs(expected))
+    case default
+      ! No such relation: it does not hold.
     end select
   end function reals_hold
 
@@ -134,6 +136,8 @@ contains
       integers_hold = expected > actual
     case (compare_greaterthanorequal)
       integers_hold = expected >= actual
+    case default
+      ! No such relation: it does not hold.
     end select
   end function integers_hold
 

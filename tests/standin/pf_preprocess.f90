@@ -274,6 +274,8 @@ contains
         depth = depth - 1
       case (",")
         if (depth == 0) exit
+      case default
+        ! Part of the argument.
       end select
     end do
     argument_end = argument_end - 1

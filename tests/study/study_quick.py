@@ -18,7 +18,7 @@ from dd3.tables import read_table
 ROOT = Path(__file__).resolve().parents[2]
 
 CASES = ROOT / "input_files" / "bending_study" / "quick.csv"
-STUDY = [sys.executable, "-m", "dd3", "study"]
+STUDY = [sys.executable, "-m", "bending_study"]
 NAMES = ["a-1e3", "b-1e3", "b-1e5-c1", "a-1e2-c1-alone"]
 
 

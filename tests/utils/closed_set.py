@@ -46,6 +46,11 @@ def collar():
     part_set.turned_solid([(10, -8), (10, 0), (40, 0), (43, 25), (60, 25)], 1, 3)
 
 
+def round_lid(*path):
+    """Return a maker of a round lid of 0.6 mm without notches."""
+    return lambda: part_set.turned_solid(path, 0.6, 1.5)
+
+
 def surface_of(make):
     """Return a maker of the upper side alone of a solid, which has 1 mm and is open upwards."""
     def made():
@@ -81,6 +86,8 @@ PAIRS = {
     "bend": (bend, 1, part_set.tray),
     "whole_bend": (whole_bend, 1, part_set.tray),
     "rows": (rows_of_holes, 5, part_set.tray),
+    "notched_lid": (part_set.notched_lid, 2, round_lid((0, 0), (30, 0), (30, 8))),
+    "notched_flange": (part_set.notched_flange, 1, round_lid((0, 0), (30, 0), (32, 8), (45, 8))),
     "surface": (surface_of(part_set.wall_hole_tray), 1, surface_of(part_set.tray)),
     "bend_of_surface": (surface_of(bend), 1, surface_of(part_set.tray)),
 }

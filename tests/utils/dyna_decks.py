@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from dd3.plot.sheet import bernstein, read_patches
+from dd3.tools.surface import points_on, read_patches
 
 WIDTH = 10.0  # of the strip, mm
 RADIUS, SEGMENTS = 5.0, 12  # of the tools' edges, mm, and the facets around a quarter
@@ -160,11 +160,9 @@ def roll_deck(angle=0.5):
 
 def sampled(path, count):
     """Yield the points (v, u) of a regular grid on each patch of a tool."""
+    t = np.linspace(0, 1, count + 1)
     for points, weights in read_patches(path):
-        in_v, in_u = (bernstein(size - 1, np.linspace(0, 1, count + 1)) for size in weights.shape)
-        net = np.concatenate([points * weights[..., None], weights[..., None]], axis=2)
-        value = np.einsum("iv,ju,ijc->vuc", in_v, in_u, net)
-        yield value[..., :3] / value[..., 3:]
+        yield points_on(points, weights, t, t)
 
 
 def cup_deck(folder, elements, depth):

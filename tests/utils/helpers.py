@@ -19,8 +19,8 @@ ROOT = Path(__file__).resolve().parents[2]
 UTILS = ROOT / "utils"
 
 
-def call(*words, expect=0):
-    """Call dd3 in this process; return what it says."""
+def call(*words, expect=0, main=main):
+    """Call dd3, or another command, in this process; return what it says."""
     said, code = io.StringIO(), 0
     with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
         try:

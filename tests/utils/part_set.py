@@ -254,6 +254,39 @@ def cup_with_holes():
         body = holes(body, [(0, 0, 18)], axis, radius=2.5, length=100)
 
 
+def notched(body, *degrees, low=5.0, inside=25.0):
+    """Return a turned body with notches of 8 mm at angles, above `low` and outside of a radius; 0 is the seam of its
+    faces."""
+    tools = [(3, occ.addBox(inside, -4, low, 40, 8, 20)) for _ in degrees]
+    for tool, angle in zip(tools, degrees):
+        occ.rotate([tool], 0, 0, 0, 0, 0, 1, math.radians(angle))
+    return occ.cut(body, tools)[0]
+
+
+def notched_lid():
+    """Make a round lid of 0.6 mm with two notches in its wall, one of them on the seam of its faces."""
+    notched(turned_solid([(0, 0), (30, 0), (30, 8)], 0.6, 1.5), 0, 120)
+
+
+def notched_flange():
+    """Make a round lid of 0.6 mm with a notch in its level flange, on the seam of its faces."""
+    notched(turned_solid([(0, 0), (30, 0), (32, 8), (45, 8)], 0.6, 1.5), 0, inside=40)
+
+
+def folded_cover():
+    """Make a cover with walls on four sides, folded, open at its corners, and a notch in the rim of a wall."""
+    body = pocket((40, 30), 15, 1, 0, 3)
+    corners = [(3, occ.addBox(x, y, -1, 6, 6, 20)) for x in (-41, 35) for y in (-31, 25)]
+    occ.cut(body, [*corners, (3, occ.addBox(-5, 25, 9, 10, 10, 10))])
+
+
+def relieved_angle():
+    """Make an angle whose web goes on beside the bend, behind a relief."""
+    body = strip([(0, 30), (0, 0), (40, 0)], 2, 3, 60)
+    body = occ.cut(body, [(3, occ.addBox(10, -10, -1, 30, 16, 40))])[0]
+    occ.fuse(body, [(3, occ.addBox(14, -15, 0, 16, 25, 2))])
+
+
 def slotted_cover():
     """Make a shallow cover with 165 slots."""
     body = pocket((110, 80), 12, 0.8, 10, 4)
@@ -462,6 +495,10 @@ PARTS = {
     "cup_with_holes": Expected(cup_with_holes, holes=5, symmetry=2, radius=5.0),
     "s_rim_tray": Expected(s_rim_tray, symmetry=1, radius=5.0),
     "saddle_tray": Expected(saddle_tray, symmetry=2, radius=5.0),
+    "notched_lid": Expected(notched_lid, thickness=0.6, notches=2, symmetry=1, radius=1.5),
+    "notched_flange": Expected(notched_flange, thickness=0.6, notches=1, symmetry=1, radius=1.5),
+    "folded_cover": Expected(folded_cover, bent=True, notches=1, symmetry=1, radius=2.0),
+    "relieved_angle": Expected(relieved_angle, thickness=2.0, bent=True, notches=1, radius=3.0, toward=(0, 1, 1)),
     "slotted_cover": Expected(slotted_cover, thickness=0.8, holes=165, symmetry=2, radius=3.2),
     "flanged_cover": Expected(flanged_cover, thickness=0.8, holes=5, symmetry=2, radius=3.0),
     "louvred_cover": Expected(louvred_cover, holes=3, symmetry=1, radius=0.0),

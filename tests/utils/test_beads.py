@@ -77,7 +77,7 @@ def test_restraint():
 
 def test_finished_run(tmp_path):
     """Check that the draw-in of a run takes the place of the estimate."""
-    from dd3.tool import draw_in_of
+    from dd3.tools.set_files import draw_in_of
     plan = np.array([[-60.0, -40], [60, -40], [60, 40], [-60, 40]])
     start = np.concatenate([np.column_stack([plan, np.full(4, z)]) for z in (0.0, 1.0)])
     value = np.tile([5.0, 5.0, 20.0, 20.0], 2)
@@ -111,7 +111,5 @@ def test_input_file(tmp_path, program):
 
 def test_pad():
     """Check that a part without a holder all around gets no beads."""
-    from argparse import Namespace
-
-    from dd3.tool import beads_of
-    assert "no holder" in beads_of(ToolSet(), Namespace()).reason
+    from dd3.tools.set_files import beads_of
+    assert "no holder" in beads_of(ToolSet(), None).reason

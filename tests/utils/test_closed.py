@@ -8,11 +8,15 @@ import part_set
 import pytest
 from closed_set import PAIRS, largest_distance, occ, surface_of, upper, whole_bend, write
 from helpers import call
-from test_tool_surfaces import read
+from test_tool_surfaces import points_of, read
 
 from dd3.curve import read_curves
 from dd3.gmsh_session import session
-from dd3.tools.cad import silence
+from dd3.part.bends import find_bends
+from dd3.part.closed import why
+from dd3.part.openings import Opening
+from dd3.part.reading import Request, read_part
+from dd3.tools.cad import Model, overlapping, silence
 from dd3.tools.patch_distance import Distance
 
 
@@ -34,7 +38,7 @@ def test_side(folder, name):
     assert abs(area / plain - 1) < 1e-6 and rims == plain_rims, (area, plain, rims, plain_rims)
 
 
-@pytest.mark.parametrize("name", ["u_section", "cup", "tray", "slotted"])
+@pytest.mark.parametrize("name", ["u_section", "cup", "tray", "slotted", "notched_lid"])
 def test_tools(folder, tmp_path, name):
     """Check the tools against those of the part without openings."""
     said = call("tool", folder / f"{name}.step", tmp_path / "own", "--flange", 20)
@@ -50,7 +54,9 @@ def test_curves(folder, tmp_path):
     """Check the true rims of a tray with a hole in its wall, where the punch ends, also of a part that is turned."""
     said = call("tool", folder / "tray.step", tmp_path, "--rotate", 0, 0, 1, 30, "--move", 5, 0, 3, "--flange", 20)
     curves = read_curves(tmp_path / "trim.txt")
-    assert len(curves) == 2 and 'file = "trim.txt"' in (tmp_path / "trim.dat").read_text()
+    deck = (tmp_path / "trim.dat").read_text()
+    assert len(curves) == 2 and 'file = "trim.txt"' in deck and "from = draw.out/draw " in deck
+    assert "  keep = on\n\n*PHASE springback" in (tmp_path / "draw.dat").read_text()
     punch = read(tmp_path / "punch.bez")
     punch[..., 2] -= punch[..., 3] * float(said.split("travel")[1].split()[0])
     for curve in curves:
@@ -69,6 +75,47 @@ def test_refusal(tmp_path):
     said = call("tool", tmp_path / "part.step", tmp_path / "tools", "--thickness", 1, expect=2)
     assert "is not filled, as faces end there" in said and "at x y z = 36.32 0 4.634 in faces 4 12-13 18" in said, said
     assert (tmp_path / "tools" / "part.png").exists() and not (tmp_path / "tools" / "punch.bez").exists()
+
+
+def test_folded(tmp_path):
+    """Check that what is cut before it is bent is said so: a web behind a relief, and an open corner."""
+    paths = part_set.write(tmp_path, ["relieved_angle", "folded_cover"])
+    said = call("tool", paths["relieved_angle"], tmp_path / "tools", expect=2)
+    assert "in faces 8-10 is not filled, as the sheet goes on beside a bend there" in said, said
+    with session() as model:
+        reading = read_part(model, Request(paths["folded_cover"], toward=(0, 0, 1)))
+        upper, (first, *others) = reading.direction.upper, find_bends(reading.shape, reading.direction.upper)
+        across = next(one for one in others if abs(one.axis @ first.axis) < 0.5)
+        corner = Opening("notch", [], [*first.faces, *across.faces], np.zeros(3), 1.0, notch=True)
+        assert "bent along lines in different directions" in why(reading.shape, upper, corner)
+
+
+def test_open_corners(tmp_path):
+    """Check that the blank of a folded cover is cut at its corners, and its tools are open there."""
+    path = part_set.write(tmp_path, ["folded_cover"])["folded_cover"]
+    call("tool", path, tmp_path / "tools")
+    outline = read_curves(tmp_path / "tools" / "blank.txt")[0]
+    assert len(read_curves(tmp_path / "tools" / "trim.txt")) == 1
+    inside = np.abs(outline[:, :2]) - np.array([45, 35])
+    assert not (inside > 0).all(axis=1).any(), outline
+    for name in ("punch", "die"):
+        points = points_of(read(tmp_path / "tools" / f"{name}.bez"), 3)[0].reshape(-1, 3)
+        in_corner = (np.abs(points[:, 0]) > 36) & (np.abs(points[:, 1]) > 26) & (points[:, 2] < -3)
+        assert not in_corner.any(), (name, points[in_corner])
+
+
+def test_overlapping():
+    """Check that a face is found of whose patches one lies upon another."""
+    with session() as model:
+        tag = model.model.occ.addRectangle(0, 0, 0, 2, 1)
+        model.model.occ.synchronize()
+        x, y = np.meshgrid([0.0, 0.5, 1.0], [0.0, 0.5, 1.0])
+        patch = np.stack([x, y, 0 * x], axis=2)
+        nodes = np.array([patch, patch + [1, 0, 0]])
+        part = Model(nodes=nodes, uv=nodes[..., :2].copy(), face=np.zeros(2, int), tags=[tag])
+        assert not overlapping(model, part)
+        part.nodes[1] = part.nodes[1][:, ::-1]
+        assert overlapping(model, part) == {0}
 
 
 def made(path, maker):

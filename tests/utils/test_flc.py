@@ -1,5 +1,4 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-#: {"name": "utils_flc"}
 """Forming limit curves by Marciniak and Kuczynski: closed forms, independent integrations, the command."""
 
 import argparse
@@ -15,7 +14,7 @@ from dd3 import forming_limit, marciniak_kuczynski, places
 from dd3.errors import Problem
 from dd3.flc import calibrated
 from dd3.forming_limit import read_curve
-from dd3.laws_library import Material
+from dd3.laws import Material
 from dd3.marciniak_kuczynski import RATIO, Groove, Path, Sheet, ratios_of
 
 pytestmark = pytest.mark.skipif(places.nearest(places.LIBRARY) is None, reason="libdd3laws.so is not built")
@@ -24,7 +23,7 @@ N = 0.22
 
 def material(law="von_mises", hardening=f"swift K=500 e0=1e-6 n={N}", young=2e7):
     """Return a material, nearly rigid-plastic with a power law."""
-    return Material(text=f"*MATERIAL sheet\n  young = {young}\n  poisson = 0.3\n  yield = {law}\n  hardening = {hardening}\n")
+    return Material(f"*MATERIAL sheet\n  young = {young}\n  poisson = 0.3\n  yield = {law}\n  hardening = {hardening}\n")
 
 
 def plane_strain(ratio):

@@ -117,6 +117,25 @@ def test_materials():
              "hill48 r0=1 r45=1 r90=1", "swift K=500 e0=0.01 n=0.2")):
         found, text = imported(with_material(*card))
         assert f"  yield = {criterion}\n" in text and f"  hardening = {hardening}" in text, (card, found.law)
+    two_surfaces = "yoshida_uemori Y=124 B=168 C=500 m=12 b_sat=9 Rsat=190 h=0.5\n"
+    rates = (168.0, 124.0, 500.0, 12.0, 190.0, 9.0, 0.5)
+    for card, criterion, modulus in (
+            (["*MAT_125", row(*elastic, 1.5), row(*rates), row(1.63e5, 30.8)], "hill48 r0=1.5 r45=1.5 r90=1.5",
+             "chord Ea=163000 xi=30.8"),
+            (["*MAT_KINEMATIC_HARDENING_TRANSVERSELY_ANISOTROPIC", row(*elastic), row(*rates, 500.0), row("")],
+             "hill48 r0=1 r45=1 r90=1", ""),
+            (["*MAT_KINEMATIC_HARDENING_BARLAT89", row(*elastic, 2.0, 1.6, 1.2, 2.0), row(*rates),
+              row(2.0, "", "", "", "", 1.63e5, 30.8), row("", "", "", 0.0, 1.0), row("")], "hill48 r0=1.6 r45=1.2 r90=2",
+             "chord Ea=163000 xi=30.8")):
+        found, text = imported(with_material(*card))
+        assert f"  yield = {criterion}\n" in text and f"  hardening = {two_surfaces}" in text, (card, text)
+        assert found.law.modulus == modulus and (f"  modulus = {modulus}\n" in text) == bool(modulus)
+    assert np.allclose(found.law.rolling, (0, 1, 0))
+    for rates, options, message in (((168.0, 168.0), (), "CB = 168 is not larger than Y = 168"),
+                                    ((*rates, 200.0), (), "SC2 = 200, another rate than SC"),
+                                    (rates, (0.0, 0.0, 1), "IOPT = 1, the modified hardening"),
+                                    (rates, (2.2e5, 30.0), "EA = 220000 is larger than E")):
+        assert message in refused(with_material("*MAT_125", row(*elastic, 1.5), row(*rates), row(*options)))
     found, text = imported(with_material("*MAT_036", row(*elastic, 1.0, 1000.0, 200.0), row(6.0, 1.6, 1.2, 2.0), row(3.0),
                                          row(""), row(0.0, 1.0, 0.0, "", "", "", 30.0)))
     assert np.allclose(found.law.rolling, (math.cos(math.radians(30)), math.sin(math.radians(30)), 0), atol=1e-6)

@@ -19,14 +19,13 @@ from dd3.compensate import (
     divisions,
     moved_surface,
     nodes_of,
-    read_surface,
     smooth_field,
     write_step,
 )
 from dd3.curve import read_curves
 from dd3.gmsh_session import session
 from dd3.outline import Outline, Rim, excess, moved
-from dd3.tools.surface import write
+from dd3.tools.surface import read_patches, write
 
 STRIP = """*PARAMETER
   strain = 0.02
@@ -203,7 +202,7 @@ def test_moved_surface(tmp_path):
     path.write_text("patch 2 1 rational\n"
                     f"0 -10 -5 1\n0 -10 0 {arc}\n5 -10 0 1\n0 10 -5 1\n0 10 0 {arc}\n5 10 0 1\n"
                     "patch 1 1\n5 -10 0\n25 -10 0\n5 10 0\n25 10 0\n")
-    patches = read_surface(path)
+    patches = read_patches(path)
     radius = np.linalg.norm(nodes_of(patches[0], 3, 3)[..., [0, 2]] - (5, -5), axis=2)
     assert np.allclose(radius, 5) and divisions(patches, 5.0).tolist() == [[4, 2], [4, 4]]
     rng = np.random.default_rng(3)
@@ -220,7 +219,7 @@ def test_moved_surface(tmp_path):
     mirrored = nodes * (1, -1, 1)
     assert max(np.abs(nodes - place).sum(axis=1).min() for place in mirrored) < 1e-6
     write(path, moved_surface(path, np.zeros_like, np.inf, np.zeros(3)), ["unchanged"])
-    again = np.linalg.norm(nodes_of(read_surface(path)[0], 4, 4)[..., [0, 2]] - (5, -5), axis=2)
+    again = np.linalg.norm(nodes_of(read_patches(path)[0], 4, 4)[..., [0, 2]] - (5, -5), axis=2)
     assert np.allclose(again, 5, atol=0.2)
     write_step(tmp_path / "tool.step", surface)
     with session(tmp_path / "tool.step") as gmsh:

@@ -11,7 +11,7 @@ import pytest
 from helpers import call
 
 from dd3.errors import Problem
-from dd3.tools import pad_force, set_deck, set_material
+from dd3.tools import pad_force, set_deck, set_material, tool_set
 from dd3.tools.pad_force import Pin, Pull
 from dd3.tools.set_blank import Blank
 
@@ -55,13 +55,24 @@ def test_angle(parts, tmp_path, program):
     places = re.findall(r"in the hole round 6 at x y (\S+) (\S+):", said)
     assert sorted((float(x), float(y)) for x, y in places) == [(-15, 25), (15, 25)], said
     assert text.count("*BOUNDARY pin_") == 2 and "fix = x y\n" in text and "fix = y\n" in text, text
+    assert text.count("\n  pin = 6\n") == 2 and "  keep = on\n" in text, text
     assert "gravity" not in text and "\n  density = " in text, text
 
 
 def test_pins():
     """Check that the second pin leaves the distance from the first one free."""
-    text = set_deck.pinned([Pin("round 6", np.array([0.0, 0.0])), Pin("round 5", np.array([1.0, 9.0]))])
+    text = set_deck.pinned([Pin("round 6", np.array([0.0, 0.0]), 6.0), Pin("round 5", np.array([1.0, 9.0]), 5.0)])
+    assert re.findall(r"pin = (.*)", text) == ["6", "5"], text
     assert re.findall(r"fix = (.*)", text) == ["x y", "x"] and "near = 1 9 0" in text, text
+
+
+def test_free_stroke():
+    """Check the stroke over which one of two walls is formed alone, and that closed rims have none."""
+    high, low = (SimpleNamespace(rim=SimpleNamespace(points=np.array([[0.0, y, z], [9.0, y, z]]), closed=False))
+                 for y, z in ((-30.0, 25.0), (28.0, 15.0)))
+    assert tool_set.free_stroke(SimpleNamespace(reaches=[high, low])) == pytest.approx(10.0)
+    low.rim.closed = True
+    assert tool_set.free_stroke(SimpleNamespace(reaches=[high, low])) == 0.0
 
 
 def test_weight(tmp_path):

@@ -115,6 +115,16 @@ def test_sheet(run, tmp_path):
     assert size_of(tmp_path / "two.png") == (300, 400)
 
 
+def test_levels(tmp_path):
+    """Check the picture of the levels of elements: their colours, and the legend with their number."""
+    run = write_run(tmp_path / "job.out", CORNERS, CORNERS - [0, 0, 2], [range(8)], HISTORY, STATUS,
+                    at_cells={"level": ([0.0], [1.0])})
+    call("plot", "sheet", run, "--field", "level", "--view", "top", "--size", 300, 200, "--output",
+         tmp_path / "one.png")
+    red, green, blue = np.moveaxis(matplotlib.image.imread(tmp_path / "one.png")[..., :3], 2, 0)
+    assert np.count_nonzero((blue > red + 0.1) & (green > red)) > 1000  # level 1 is blue
+
+
 def test_refusals(run, tmp_path):
     """Check that requests that cannot be met give one line each."""
     top = ("--field", "stress", "--view", "top", "--size", 300, 200)

@@ -36,7 +36,7 @@ def test_history_needs_numpy_and_pandas_alone(tmp_path):
 
 
 def test_commands_without_locks():
-    code = "import dd3.report, dd3.process, dd3.study.run, dd3.tool; print('imported')"
+    code = "import dd3.report, dd3.process, dd3.study.vary, dd3.tool; print('imported')"
     done = run_hidden(OF_POSIX, code)
     assert done.stdout == "imported\n", done
 

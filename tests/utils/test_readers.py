@@ -15,7 +15,7 @@ import dd3
 from dd3 import programs, tables
 from dd3.errors import Problem
 from dd3.run import file_of, read_frame
-from dd3.study import cases
+from bending_study import cases
 from dd3.tools.blocks import read_blocks
 
 STATUS = """increment,attempt,phase,travel,r,limiter,iterations,criterion,solver_iterations,gap,stick,slip,outcome,\

@@ -66,10 +66,9 @@ def convert(*words, expect=0):
 
 def read(path):
     """Return the patches of a .bez file, raised to degree 2."""
-    lines = [line.split() for line in path.read_text().splitlines() if not line.startswith("#")]
     raise_by = {2: np.array([[1, 0], [.5, .5], [0, 1]]), 3: np.eye(3)}
     nets = []
-    for points, weights in surfaces.read_lines(lines):
+    for points, weights in surfaces.read_patches(path):
         net = surfaces.homogeneous(points, weights)
         nets.append(np.einsum("ai,bj,ijc->abc", raise_by[net.shape[0]], raise_by[net.shape[1]], net))
     return np.array(nets)

@@ -48,6 +48,11 @@ def test_answers():
     support = {"name": "middle", "axis": "x", "reaction": 300.0, "tool": "punch", "tool_force": 2e4}
     assert "supports" not in answers(job_of(punch, support=support))
     assert answers(job_of(punch, support=support, codes=["W121"]))["supports"] == DOUBTFUL
+    pin = {"name": "pin_1", "diameter": 6.0, "force": 900.0, "thickness": 1.0, "bearing_pressure": 150.0}
+    for stress, answer in ((160.0, GOOD), (140.0, DOUBTFUL)):
+        job = job_of(punch)
+        job["phases"][0]["result"]["closing"]["pins"] = [{**pin, "yield_stress": stress}]
+        assert answers(job)["pins"] == answer
     assert [splits(critical, ["", ""], False)[0].answer for critical in (None, 0, 3)] == [OPEN, GOOD, BAD]
     assert [splits(0, ["", ""], thinned)[1].answer for thinned in (False, True)] == [GOOD, BAD]
     assert [sprung(0.5, tolerance)[0].answer for tolerance in (None, 0.5, 0.4)] == [OPEN, GOOD, BAD]

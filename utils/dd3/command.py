@@ -37,25 +37,20 @@ COMMANDS = {
     "export": ("dd3.export", "write the drawn sheet as a mesh, for ParaView, or for LS-DYNA"),
     "identify": ("dd3.identify.command", "identify a yield criterion, with a hardening law, from measured values"),
     "fit": ("dd3.identify.fit", "fit a hardening law to a tension curve"),
-    "study": ("vary parameters of an input file; the bending study", "dd3 study job.dat --vary friction=0.1,0.14", {
+    "study": ("vary parameters of an input file", "dd3 study job.dat --vary friction=0.1,0.14", {
         ANY: ("dd3.study.vary", "vary parameters of this input file, with a table and pictures of results"),
         "combination": ("dd3.study.vary:run_combination", "run one of these combinations in the folder of the study"),
-        "run": ("dd3.study.run", "the bending study: run all cases, gather the table and draw the figures"),
-        "command": ("dd3.study.cases:print_command", "print the command of a case"),
-        "case": ("dd3.study.cases:run_case", "run a case unless it is done"),
-        "table": ("dd3.study.cases:gather", "gather the finished cases in results.csv"),
-        "figures": ("dd3.study.figures", "draw the figures from results.csv"),
-        "report": ("dd3.study.tables", "rewrite the tables of the document from results.csv"),
     }),
     "example": ("dd3.example", "copy an example, or list the examples"),
+    "completion": ("dd3.completion", "print a script that completes commands and options in a shell"),
     "info": ("dd3.info", "print what is installed: versions, program, examples, Python packages"),
 }
 USAGE = "dd3 plot force bending.out"
 
 
-def new_parser(name: str, text: str | None) -> argparse.ArgumentParser:
+def new_parser(name: str, text: str | None, command: str = "dd3") -> argparse.ArgumentParser:
     """Return the parser of a subcommand; `text` describes it, with examples."""
-    return argparse.ArgumentParser(f"dd3 {name}", description=text,
+    return argparse.ArgumentParser(f"{command} {name}", description=text,
                                    formatter_class=argparse.RawDescriptionHelpFormatter)
 
 

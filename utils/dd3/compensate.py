@@ -33,15 +33,13 @@ from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator, RBFIn
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
-from scipy.special import comb
 
 from dd3.bound import Bound, rings
-from dd3.errors import Problem
+from dd3.errors import LOG, Problem, Stopped
 from dd3.gmsh_session import session
 from dd3.process import (
     Operation,
     Process,
-    Stopped,
     check_deck,
     process_parser,
     read_process,
@@ -54,12 +52,11 @@ from dd3.programs import find_program, made_folder
 from dd3.run import read_frame, read_job
 from dd3.sheet import AXES, Sheet
 from dd3.springback import best_fit, images, steps_with_tools
-from dd3.tables import read_text
 from dd3.tools.cad import silence
 from dd3.tools.facet_files import Facets
 from dd3.tools.nagata import estimate_normals, unfolded_patches
 from dd3.tools.picture import quads as flat_quads
-from dd3.tools.surface import Surface, from_nodes, read_lines, write
+from dd3.tools.surface import Patches, Surface, from_nodes, points_on, read_patches, write
 
 MOST_POINTS = 2000  # of the smooth function
 ROUND = 4.0  # radius at the tips of the multiquadrics, over the distance of the places
@@ -212,25 +209,12 @@ def at_places(places: np.ndarray, values: np.ndarray, wanted: np.ndarray) -> np.
     return np.asarray(found)
 
 
-def read_surface(path: Path) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return points and weights of the patches of a .bez file."""
-    lines = [line.partition("#")[0].split() for line in read_text(path).splitlines()]
-    return read_lines([line for line in lines if line])
-
-
 def nodes_of(patch: tuple[np.ndarray, np.ndarray], in_v: int, in_u: int) -> np.ndarray:
     """Return the points (v, u, 3) of a patch on a regular grid of its parameters, 2 n + 1 points along each."""
-    points, weights = patch
-    factors = []
-    for degree, count in zip((points.shape[0] - 1, points.shape[1] - 1), (in_v, in_u)):
-        t, k = np.linspace(0, 1, 2 * count + 1), np.arange(degree + 1)
-        factors.append(comb(degree, k) * t[:, None]**k * (1 - t[:, None])**(degree - k))
-    above = np.einsum("ai,bj,ijc->abc", *factors, points * weights[..., None])
-    below = np.einsum("ai,bj,ij->ab", *factors, weights)
-    return np.asarray(above / below[..., None])
+    return points_on(*patch, np.linspace(0, 1, 2 * in_v + 1), np.linspace(0, 1, 2 * in_u + 1))
 
 
-def divisions(patches: list[tuple[np.ndarray, np.ndarray]], size: float) -> np.ndarray:
+def divisions(patches: Patches, size: float) -> np.ndarray:
     """Return the numbers of parts (n, 2) of the patches along v and u that make them no longer than `size`: the same
     for opposite sides and for patches that share a side."""
     grids = [nodes_of(patch, 4, 4) for patch in patches]
@@ -252,7 +236,7 @@ def divisions(patches: list[tuple[np.ndarray, np.ndarray]], size: float) -> np.n
 def moved_surface(path: Path, displacement: Any, size: float, place: np.ndarray) -> Surface:
     """Return a tool's surface, divided, with its points moved. `place` is its displacement where the displacement of
     its points is given."""
-    patches = read_surface(path)
+    patches = read_patches(path)
     blocks, face = [], []
     for number, (patch, (in_v, in_u)) in enumerate(zip(patches, divisions(patches, size))):
         nodes = nodes_of(patch, in_v, in_u)
@@ -380,9 +364,9 @@ def compensate(program: Path, process: Process, parameter: str, loops: int, tole
         if not compared.all():
             goal[~compared] = normal_feet(place[~compared], around)[0]
         found.append(Loop(tools, float(deviation.max()), float(np.sqrt((deviation**2).mean()))))
-        print(f"loop {len(found) - 1}: largest deviation {found[-1].largest:.4g} mm, root mean square "
+        LOG.info(f"loop {len(found) - 1}: largest deviation {found[-1].largest:.4g} mm, root mean square "
               f"{found[-1].rms:.4g} mm" + f", without {sum(~compared)} nodes beyond the border of the wanted shape"
-              * bool(sum(~compared)), flush=True)
+              * bool(sum(~compared)))
         if found[-1].largest <= tolerance or len(found) > loops:
             break
         folder = made_folder(work / f"loop_{len(found)}")
@@ -395,7 +379,7 @@ def compensate(program: Path, process: Process, parameter: str, loops: int, tole
             stopped = run_with(program, process, operations, {parameter: str(folder.resolve())}, threads)
             if not isinstance(stopped, Stopped):
                 break
-            print(f"loop {len(found)} with {part:g} of the correction stopped: {stopped}", flush=True)
+            LOG.info(f"loop {len(found)} with {part:g} of the correction stopped: {stopped}")
         if stopped:
             break
     best = min(found, key=lambda loop: loop.largest)
@@ -407,7 +391,7 @@ def compensate(program: Path, process: Process, parameter: str, loops: int, tole
         write_step(work / f"{Path(name).stem}.step", moved_surface(path, np.zeros_like, np.inf, np.zeros(3)))
     deviations = [(loop.largest, loop.rms) for loop in found]
     write_deviations(work / "deviations.csv", "loop,largest,rms", deviations, 0)
-    print(f"tools of loop {found.index(best)} in {work}")
+    LOG.info(f"tools of loop {found.index(best)} in {work}")
     if stopped:
         raise Problem(f"loop {len(found)} stopped: {stopped}")
     return deviations

@@ -17,7 +17,7 @@ from scipy.spatial import cKDTree
 from dd3.account import Account
 from dd3.command import new_parser
 from dd3.dxf import pieces_of_dxf
-from dd3.errors import Problem
+from dd3.errors import LOG, Problem
 from dd3.gmsh_session import session
 from dd3.tools.cad import refuse_cut
 from dd3.tools.cad_account import enter_cad
@@ -149,11 +149,11 @@ def main(words: Sequence[str] | None = None) -> None:
     for number, points in enumerate(curves, 1):
         low, high = points.min(0), points.max(0)
         box = ", ".join(f"{axis} {a:.4g} to {b:.4g}" for axis, a, b in zip("xyz", low, high))
-        print(f"curve {number}: {len(points)} points, {box} mm")
+        LOG.info(f"curve {number}: {len(points)} points, {box} mm")
     say_left_out(account)
 
 
 def say_left_out(account: Account) -> None:
     """Print what was not used."""
     for item in account.left_out():
-        print(f"left out: {item}")
+        LOG.info(f"left out: {item}")

@@ -18,7 +18,7 @@ from numpy.polynomial.legendre import leggauss
 
 from dd3.bound import bound_nodes
 from dd3.command import new_parser
-from dd3.errors import Problem
+from dd3.errors import LOG, Problem
 from dd3.fields import AT, Fields
 from dd3.mesh import read_run, write_inp
 from dd3.sheet_state import COLUMNS, SheetState, read_state
@@ -160,6 +160,26 @@ WRITERS: dict[str, Callable[[Fields, int, Path, bool], None]] = {
     ".inp": to_inp, ".vtu": to_vtu, ".k": to_dyna, ".key": to_dyna, ".dyn": to_dyna}
 
 
+def export(run: str | Path, target: str | Path, at: str | float | None = None, shells: bool = False) -> Path:
+    """Write the sheet of a run at a step for another program; return the path of the file.
+
+    target: file whose ending is the format: .inp (mesh), .vtu (grid with all fields), .k .key .dyn (LS-DYNA). at:
+    travel in mm, or a phase (the last step). shells: of LS-DYNA, the mid-surface of a sheet of one layer.
+    """
+    target = Path(target)
+    writer = WRITERS.get(target.suffix.lower())
+    if writer is None:
+        raise Problem(f"{target}: unknown kind of file; expected {' '.join(WRITERS)}")
+    if shells and writer is not to_dyna:
+        raise Problem("--shells takes a file of LS-DYNA: .k .key .dyn")
+    fields = Fields(run)
+    step = fields.last if at is None else fields.step_at(str(at))
+    target.parent.mkdir(parents=True, exist_ok=True)
+    writer(fields, step, target, shells)
+    LOG.info(f"{target}: {fields.state(step)}, {len(fields.cells(step).types)} elements")
+    return target
+
+
 def main(words: Sequence[str] | None = None) -> None:
     """Export the run of the command line."""
     parser = new_parser("export", __doc__)
@@ -167,14 +187,4 @@ def main(words: Sequence[str] | None = None) -> None:
     parser.add_argument("target", type=Path, help=f"file to write: {' '.join(WRITERS)}")
     parser.add_argument("--at", metavar="PLACE", help=AT)
     parser.add_argument("--shells", action="store_true", help="LS-DYNA: the mid-surface of a sheet of one layer")
-    options = parser.parse_args(words)
-    writer = WRITERS.get(options.target.suffix.lower())
-    if writer is None:
-        raise Problem(f"{options.target}: unknown kind of file; expected {' '.join(WRITERS)}")
-    if options.shells and writer is not to_dyna:
-        parser.error("--shells takes a file of LS-DYNA: .k .key .dyn")
-    fields = Fields(options.run)
-    step = fields.last if options.at is None else fields.step_at(options.at)
-    options.target.parent.mkdir(parents=True, exist_ok=True)
-    writer(fields, step, options.target, options.shells)
-    print(f"{options.target}: {fields.state(step)}, {len(fields.cells(step).types)} elements")
+    export(**vars(parser.parse_args(words)))

@@ -27,7 +27,7 @@ from dd3.account import Account
 from dd3.command import new_parser
 from dd3.errors import Problem
 from dd3.forming_limit import Curve, read_points
-from dd3.laws_library import Material
+from dd3.laws import Material
 from dd3.marciniak_kuczynski import LARGEST, LEFT, POINTS, RATIO, RIGHT, Limit, Sheet, curve_of, ratios_of
 from dd3.marciniak_kuczynski import Path as StrainPath
 from dd3.plot.figures import new_figure, save, tidy
@@ -53,8 +53,8 @@ def calibrated(sheet: Sheet, minor: float, major: float) -> float:
         bound, f0 = (highest, 1 - IMPERFECTIONS[0]) if highest <= 0 else (lowest, 1 - IMPERFECTIONS[1])
         hint = ("; laws without rate sensitivity give low limits near plane strain: see --rate-sensitivity, or the "
                 "hardening at large strains" if highest <= 0 else "")
-        raise Problem(f"the measured limit {major:g} at the minor strain {minor:g} is not reached: with f0 = {f0:.6g} it "
-                      f"is {bound + major:.4g}{hint}")
+        raise Problem(f"the measured limit {major:g} at the minor strain {minor:g} is not reached: with f0 = {f0:.6g} "
+                      f"it is {bound + major:.4g}{hint}")
     return 1 - 10 ** float(brentq(excess, *ends, xtol=PRECISION))
 
 
@@ -64,8 +64,8 @@ def compared(sheet: Sheet, minor: np.ndarray, major: np.ndarray) -> list[str]:
     off = np.array([limit.major if limit else math.nan for limit in limits]) / major - 1
     branches = {"left of plane strain": minor < -PLANE, "near plane strain": np.abs(minor) <= PLANE,
                 "right of it": minor > PLANE}
-    return [f"{name}: {of.sum()} measured points, computed over measured major strain {100 * np.mean(off[of]):+.1f} % in "
-            f"the mean, {100 * off[of][np.argmax(np.abs(off[of]))]:+.1f} % at most"
+    return [f"{name}: {of.sum()} measured points, computed over measured major strain "
+            f"{100 * np.mean(off[of]):+.1f} % in the mean, {100 * off[of][np.argmax(np.abs(off[of]))]:+.1f} % at most"
             for name, of in branches.items() if of.any()]
 
 
@@ -96,7 +96,8 @@ def main(words: Sequence[str] | None = None) -> None:
     group.add_argument("--calibrate", type=float, nargs=2, metavar=("MINOR", "MAJOR"),
                        help="measured limit that gives f0")
     group.add_argument("--calibrate-plane-strain", type=float, metavar="MAJOR", help="the same, of plane strain")
-    parser.add_argument("--points", type=int, default=POINTS, help=f"strain paths from minor/major = -0.5 to 1 ({POINTS})")
+    parser.add_argument("--points", type=int, default=POINTS,
+                        help=f"strain paths from minor/major = -0.5 to 1 ({POINTS})")
     parser.add_argument("--direction", type=float, default=0.0, metavar="DEGREES",
                         help="of the major strain to the rolling direction (0)")
     parser.add_argument("--rate-sensitivity", type=float, default=0.0, metavar="M", help="exponent m (0)")
@@ -112,7 +113,8 @@ def main(words: Sequence[str] | None = None) -> None:
     if options.points < 3 or not 0 <= options.rate_sensitivity < 1:
         parser.error("--points takes at least 3, --rate-sensitivity 0 to below 1")
     file = found(options.material)
-    sheet = Sheet(Material(file, options.name), options.f0 or 1.0, options.direction, options.rate_sensitivity)
+    sheet = Sheet(Material(file=file, name=options.name), options.f0 or 1.0, options.direction,
+                  options.rate_sensitivity)
     account = Account()
     measured = read_points(options.measured, options.engineering, account) if options.measured else None
     source = "given"
@@ -121,7 +123,8 @@ def main(words: Sequence[str] | None = None) -> None:
         source = f"calibrated by the limit {point[1]:g} at the minor strain {point[0]:g}"
     rate = f", m = {options.rate_sensitivity:g}" if options.rate_sensitivity else ""
     turned = f", major strain at {options.direction:g} degrees" if options.direction else ""
-    label = f"{options.name or file.stem}: Marciniak-Kuczynski, f0 = {sheet.ratio:.5g} ({source}){rate}{turned}"
+    label = (f"{options.name or options.material.stem}: Marciniak-Kuczynski, f0 = {sheet.ratio:.5g} ({source})"
+             f"{rate}{turned}")
     limits = sheet.curve(ratios_of(options.points))
     curve, kept = curve_of(limits, label)
     write(options.output, label, kept)

@@ -21,12 +21,14 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from dataclasses import fields as fields_of
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from dd3.account import Account
 from dd3.columns import STRAIN, Column, read_columns
@@ -47,6 +49,7 @@ LARGEST_N = 0.21  # of the correlation
 THINNING = 0.25  # limit where none is given
 LARGEST = 2.0  # logarithmic strain; larger ones are in per cent
 LOW_CARBON = "low_carbon_steel"  # grade in *MATERIAL
+WITH_EXPONENT = ("swift", "swift_voce", "ludwik")  # hardening laws with an exponent n
 EXPECTED = "strains as fractions, not per cent, or with the unit % in the heading"
 
 
@@ -138,26 +141,57 @@ class Limits:
     given_by: str
 
 
-def find_limits(fields: Fields, job: dict[str, Any], options: argparse.Namespace, account: Account | None = None
-                ) -> Limits:
-    """Return the limits of the options of a command and of the materials of a run."""
+@dataclass(frozen=True)
+class Criteria:
+    """What a sheet is to be judged by, where the material of the run does not say it: a file with the measured forming
+    limit curve, in engineering strains or not; the imperfection of a groove, for the curve of the run's own material by
+    Marciniak and Kuczynski; that the material is low-carbon steel, with the exponent n of its hardening, for an
+    estimate of the curve; the width of the marginal zone; the largest thinning, a fraction."""
+
+    curve: str | Path | None = None
+    engineering: bool = False
+    flc_from_material: float | None = None
+    low_carbon_steel: bool = False
+    n: float | None = None
+    margin: float = 0.1
+    thinning: float | None = None
+
+    def __post_init__(self) -> None:
+        if (self.n is not None and not self.n > 0) or not self.margin >= 0:
+            raise Problem("--n takes a positive number, --margin one that is not negative")
+        if self.thinning is not None and not 0 < self.thinning < 1:
+            raise Problem("--thinning takes a fraction between 0 and 1, 0.2 for 20 %")
+        if self.engineering and not self.curve:
+            raise Problem("--engineering goes with --curve")
+        if self.curve and (self.low_carbon_steel or self.n):
+            raise Problem("--curve goes without --low-carbon-steel and --n")
+        if self.flc_from_material is not None:
+            if not 0 < self.flc_from_material < 1:
+                raise Problem("--flc-from-material takes a number between 0 and 1, such as 0.996")
+            if self.curve or self.low_carbon_steel or self.n:
+                raise Problem("--flc-from-material goes without --curve, --low-carbon-steel and --n")
+
+
+def find_limits(fields: Fields, job: dict[str, Any], criteria: Criteria, account: Account | None = None) -> Limits:
+    """Return the limits by criteria and by the materials of a run."""
     materials = [material for material in job["materials"] if material.get("elements", 1)]
     said = [entries_of(job, material["name"]) for material in materials]
-    thinning, given_by = options.thinning, "--thinning"
+    thinning, given_by = criteria.thinning, "--thinning"
     if thinning is None:
         given = [float(entries["thinning_limit"]) for entries in said if "thinning_limit" in entries]
         thinning, given_by = (min(given), "*MATERIAL") if given else (THINNING, "default; --thinning")
-    if options.curve:
-        return Limits(read_curve(options.curve, options.engineering, account), "", thinning, given_by)
-    if options.flc_from_material:
+    if criteria.curve:
+        return Limits(read_curve(criteria.curve, criteria.engineering, account), "", thinning, given_by)
+    if criteria.flc_from_material:
         texts = {text_of(job, material["name"]) for material in materials}
         if len(texts) != 1:
             raise Problem("--flc-from-material: the sheet has several materials")
         # Here, so that the library of the laws is loaded only where it is wanted.
         from dd3.marciniak_kuczynski import curve_of_text
-        return Limits(curve_of_text(texts.pop(), materials[0]["name"], options.flc_from_material), "", thinning, given_by)
-    if options.n or options.low_carbon_steel:
-        exponent = options.n or next(filter(None, map(exponent_of, materials)), None)
+        return Limits(curve_of_text(texts.pop(), materials[0]["name"], criteria.flc_from_material), "", thinning,
+                      given_by)
+    if criteria.n or criteria.low_carbon_steel:
+        exponent = criteria.n or next(filter(None, map(exponent_of, materials)), None)
         if exponent is None:
             raise Problem("--low-carbon-steel: the hardening law has no exponent n; give --n")
         return Limits(keeler_brazier(thickness_of(fields), exponent), "", thinning, given_by)
@@ -202,7 +236,13 @@ def exponent_of(material: dict[str, Any]) -> float | None:
     """Return the exponent n of the hardening law swift, swift_voce or ludwik of a material; None with another law."""
     law = material["hardening"]
     found = (parameter["value"] for parameter in law["parameters"] if parameter["name"] == "n")
-    return next(found, None) if law["name"] in ("swift", "swift_voce", "ludwik") else None
+    return next(found, None) if law["name"] in WITH_EXPONENT else None
+
+
+def exponent_in(law: str) -> float | None:
+    """Return the exponent n of a hardening law as the input writes it, None with a law without."""
+    found = re.search(r"\sn\s*=\s*([^\s]+)", law)
+    return float(found[1].lower().replace("d", "e")) if found and law.split()[0].lower() in WITH_EXPONENT else None
 
 
 def thickness_of(fields: Fields) -> float:
@@ -220,6 +260,11 @@ class Strains:
     thinning: np.ndarray
     at_cells: "Strains | None" = None
 
+    def joined(self) -> "tuple[np.ndarray, np.ndarray, Strains]":
+        """Return major and minor strains of nodes and elements, and those of the elements alone."""
+        cells = self.at_cells or Strains(*np.zeros((3, 0)))
+        return np.concatenate([self.major, cells.major]), np.concatenate([self.minor, cells.minor]), cells
+
     def largest_thinning(self) -> float:
         """Return the largest thinning of nodes and elements."""
         cells = self.at_cells.thinning if self.at_cells else np.zeros(0)
@@ -235,27 +280,43 @@ def strains_of(sheet: Sheet, step: int, surface: str) -> Strains:
     return Strains(nodes[0], nodes[1], sheet.values(step, "thinning")[0], Strains(major, minor, thinning))
 
 
-def draw(axes: Axes, strains: Strains, limits: Limits, margin: float) -> tuple[np.ndarray | None, list[str]]:
-    """Draw the diagram; return the zone of each node and element, None without a curve, and what the diagram says:
-    the verdict by the curve, and that by the thinning."""
-    cells = strains.at_cells or Strains(*np.zeros((3, 0)))
-    major, minor = np.concatenate([strains.major, cells.major]), np.concatenate([strains.minor, cells.minor])
-    count = len(strains.major)
-    zone = None
+class Judged(NamedTuple):
+    """The zone of each node and element, None without a curve; the verdict by the curve, and that by the thinning."""
+
+    zone: np.ndarray | None
+    said: list[str]
+
+    @property
+    def critical(self) -> int | None:
+        """The number of critical nodes and elements, None without a curve."""
+        return None if self.zone is None else int((self.zone == ZONES.index("critical")).sum())
+
+
+def judge(strains: Strains, limits: Limits, margin: float) -> Judged:
+    """Judge the strains of a sheet."""
+    major, minor, cells = strains.joined()
     if limits.curve is None:
+        zone = None
         verdict = f"no verdict: {limits.why}; give --curve, --low-carbon-steel, or forming_limit in *MATERIAL"
+    else:
+        zone = limits.curve.zones(major, minor, margin)
+        verdict = by_curve(limits.curve, zone, major, minor, len(strains.major))
+    return Judged(zone, [verdict, thinned(strains, cells, limits)])
+
+
+def draw(axes: Axes, strains: Strains, limits: Limits, margin: float, zone: np.ndarray | None) -> None:
+    """Draw the diagram, with the zone of each node and element."""
+    major, minor, cells = strains.joined()
+    if limits.curve is None or zone is None:
         axes.plot(strains.minor, strains.major, ".", color="0.4")
         axes.plot(cells.minor, cells.major, "x", color="0.6", markersize=3)
     else:
-        zone = limits.curve.zones(major, minor, margin)
-        verdict = judged(limits.curve, zone, major, minor, count)
-        draw_zones(axes, limits.curve, zone, major, minor, count, margin)
+        draw_zones(axes, limits.curve, zone, major, minor, len(strains.major), margin)
     low, high = axes.get_xlim()
     axes.plot([low, 0, high], [-low, 0, high], color="0.6", linewidth=0.8)
     axes.set(xlim=(low, high), ylim=(min(0, major.min()), None), xlabel="minor strain (logarithmic)",
              ylabel="major strain (logarithmic)")
     axes.grid(True, color="0.9")
-    return zone, [verdict, thinned(strains, cells, limits)]
 
 
 def draw_zones(axes: Axes, curve: Curve, zone: np.ndarray, major: np.ndarray, minor: np.ndarray, count: int,
@@ -273,7 +334,7 @@ def draw_zones(axes: Axes, curve: Curve, zone: np.ndarray, major: np.ndarray, mi
     axes.legend(frameon=False, fontsize=9)
 
 
-def judged(curve: Curve, zone: np.ndarray, major: np.ndarray, minor: np.ndarray, count: int) -> str:
+def by_curve(curve: Curve, zone: np.ndarray, major: np.ndarray, minor: np.ndarray, count: int) -> str:
     """Return the verdict by the curve on nodes, the first `count`, and elements."""
     critical = zone == ZONES.index("critical")
     room = (curve.limit(minor) - major)[zone > 0]
@@ -298,28 +359,33 @@ def add_options(parser: argparse.ArgumentParser) -> None:
                         help="the material is low-carbon steel: estimate its curve by Keeler and Brazier")
     parser.add_argument("--n", type=float, help="hardening exponent of this estimate")
     parser.add_argument("--flc-from-material", type=float, metavar="F0",
-                        help="compute the curve of the run's material by Marciniak and Kuczynski with this ratio of the "
-                             "thicknesses of groove and sheet, such as 0.996 (`dd3 flc`)")
+                        help="compute the curve of the run's material by Marciniak and Kuczynski with this ratio of "
+                             "the thicknesses of groove and sheet, such as 0.996 (`dd3 flc`)")
     parser.add_argument("--margin", type=float, default=0.1, help="width of the marginal zone in major strain (0.1)")
     parser.add_argument("--thinning", type=float, metavar="LIMIT",
                         help=f"largest thinning allowed (that of *MATERIAL, or {THINNING:g})")
 
 
-def check_options(parser: argparse.ArgumentParser, options: argparse.Namespace) -> None:
-    """Check the options of the limits."""
-    if (options.n is not None and not options.n > 0) or not options.margin >= 0:
-        parser.error("--n takes a positive number, --margin one that is not negative")
-    if options.thinning is not None and not 0 < options.thinning < 1:
-        parser.error("--thinning takes a fraction between 0 and 1, 0.2 for 20 %")
-    if options.engineering and not options.curve:
-        parser.error("--engineering goes with --curve")
-    if options.curve and (options.low_carbon_steel or options.n):
-        parser.error("--curve goes without --low-carbon-steel and --n")
-    if options.flc_from_material is not None:
-        if not 0 < options.flc_from_material < 1:
-            parser.error("--flc-from-material takes a number between 0 and 1, such as 0.996")
-        if options.curve or options.low_carbon_steel or options.n:
-            parser.error("--flc-from-material goes without --curve, --low-carbon-steel and --n")
+def take_criteria(options: dict[str, Any]) -> Criteria:
+    """Remove the options of the limits from parsed ones; return them."""
+    return Criteria(**{entry.name: options.pop(entry.name) for entry in fields_of(Criteria)})
+
+
+def figure(run: str | Path, at: str | float | None = None, surface: str = "middle", criteria: Criteria | None = None,
+           account: Account | None = None) -> tuple[Figure, Judged]:
+    """Return the forming limit diagram of a run at a step, and what it says.
+
+    at: travel in mm, or a phase (the last step). surface: middle, upper or lower.
+    """
+    sheet, criteria = Sheet(run), criteria or Criteria()
+    step = sheet.last if at is None else sheet.step_at(str(at))
+    limits = find_limits(sheet, read_job(sheet.folder), criteria, account)
+    strains = strains_of(sheet, step, surface)
+    found = judge(strains, limits, criteria.margin)
+    drawn, axes = new_figure((8, 5.2))
+    draw(axes, strains, limits, criteria.margin, found.zone)
+    axes.set_title(sheet.state(step), fontsize=10)
+    return drawn, found
 
 
 def main(words: Sequence[str] | None = None) -> None:
@@ -331,14 +397,8 @@ def main(words: Sequence[str] | None = None) -> None:
                         help="where the strains are taken (middle)")
     add_options(parser)
     parser.add_argument("--output", default="fld.png", help="picture to write: .png, .svg or .pdf (fld.png)")
-    options = parser.parse_args(words)
-    check_options(parser, options)
-    sheet = Sheet(options.run)
-    step = sheet.last if options.at is None else sheet.step_at(options.at)
-    account = Account()
-    limits = find_limits(sheet, read_job(sheet.folder), options, account)
-    figure, axes = new_figure((8, 5.2))
-    said = draw(axes, strains_of(sheet, step, options.surface), limits, options.margin)[1]
-    axes.set_title(sheet.state(step), fontsize=10)
-    save(figure, options.output, 130)
-    print(options.output, *said, *(f"left out: {item}" for item in account.left_out()), sep="\n")
+    options = vars(parser.parse_args(words))
+    output, account = options.pop("output"), Account()
+    drawn, found = figure(criteria=take_criteria(options), account=account, **options)
+    save(drawn, output, 130)
+    print(output, *found.said, *(f"left out: {item}" for item in account.left_out()), sep="\n")

@@ -29,7 +29,7 @@ import numpy as np
 
 from dd3.errors import Problem
 from dd3.forming_limit import Curve
-from dd3.laws_library import Material
+from dd3.laws import Material
 
 RATIO = 10.0  # of the thickness strain increments of groove and sheet at the limit
 STEP, FIRST, GROWTH = 0.002, 2e-4, 1.5  # of the groove's thickness strain: largest, first, over the one before
@@ -280,12 +280,13 @@ def curve_of(limits: Sequence[Limit | None], label: str) -> tuple[Curve, list[Li
         if limit and (not kept or limit.minor > kept[-1].minor):
             kept.append(limit)
     if len(kept) < 2:
-        raise Problem(f"no localisation up to the strain {LARGEST:g} on {len(limits) - len(kept)} of {len(limits)} paths")
+        raise Problem(f"no localisation up to the strain {LARGEST:g} on {len(limits) - len(kept)} of {len(limits)} "
+                      "paths")
     return Curve([limit.minor for limit in kept], [limit.major for limit in kept], label), kept
 
 
 @lru_cache(maxsize=4)
 def curve_of_text(text: str, name: str, ratio: float) -> Curve:
     """Return the curve of the material of the lines of a block, for a ratio f0; the major strain is along rolling."""
-    sheet = Sheet(Material(text=f"*MATERIAL {name}\n{text}"), ratio)
+    sheet = Sheet(Material(f"*MATERIAL {name}\n{text}"), ratio)
     return curve_of(sheet.curve(ratios_of(POINTS)), f"{name}: Marciniak-Kuczynski, f0 = {ratio:g} (assumed)")[0]

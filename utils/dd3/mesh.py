@@ -23,7 +23,7 @@ from scipy.spatial import cKDTree
 
 from dd3.bound import bound_nodes
 from dd3.command import new_parser
-from dd3.errors import Problem
+from dd3.errors import LOG, Problem
 from dd3.fields import Fields
 from dd3.gmsh_session import session
 from dd3.hanging import TOLERANCE, hanging, outer_faces
@@ -311,18 +311,18 @@ def write_inp(path: Path, mesh: Mesh, source: Path) -> None:
 
 def report(path: Path, mesh: Mesh, merged: int, mirrored: int) -> None:
     """Say what was written and what was changed."""
-    print(f"{path}: {len(mesh.nodes)} nodes, {len(mesh.elements)} elements")
+    LOG.info(f"{path}: {len(mesh.nodes)} nodes, {len(mesh.elements)} elements")
     for what, sets in ("node sets", mesh.node_sets), ("element sets", mesh.element_sets):
         if sets:
-            print(f"{what}: {' '.join(map(set_name, sets))}")
+            LOG.info(f"{what}: {' '.join(map(set_name, sets))}")
     if merged:
-        print(f"nodes merged: {merged}")
+        LOG.info(f"nodes merged: {merged}")
     if mirrored:
-        print(f"mirrored elements turned: {mirrored}")
+        LOG.info(f"mirrored elements turned: {mirrored}")
     for kind, count in mesh.left_out.items():
-        print(f"left out: {kind}: {count}")
+        LOG.info(f"left out: {kind}: {count}")
     for item in mesh.model.left_out() if mesh.model else ():
-        print(f"left out: {item}")
+        LOG.info(f"left out: {item}")
 
 
 def main(words: Sequence[str] | None = None) -> None:
@@ -357,4 +357,4 @@ def main(words: Sequence[str] | None = None) -> None:
     write_inp(options.target, mesh, options.source)
     report(options.target, mesh, merged, mirrored)
     if doubled:
-        print(f"warning: {doubled} nodes at the place of another one do not join the elements there; see --merge")
+        LOG.warning(f"{doubled} nodes at the place of another one do not join the elements there; see --merge")

@@ -23,7 +23,7 @@ from pathlib import Path
 import numpy as np
 
 from dd3.curve import read_curves, write_curves
-from dd3.errors import Problem
+from dd3.errors import LOG, Problem
 from dd3.process import (
     Operation,
     Process,
@@ -197,8 +197,8 @@ def find_outline(program: Path, process: Process, name: str, height: float | Non
         rim = rim_on(process.operations[-1].folder, curves[0])
         beyond = excess(rim, height, wanted)
         found.append((float(abs(beyond).max()), float(abs(beyond).mean())))
-        print(f"draw {draw}: {len(beyond)} nodes of the rim, {beyond.min():+.3f} to {beyond.max():+.3f} mm beyond it",
-              flush=True)
+        LOG.info(f"draw {draw}: {len(beyond)} nodes of the rim, {beyond.min():+.3f} to {beyond.max():+.3f} mm beyond "
+                 "it")
         if found[-1][0] <= tolerance or draw == draws:
             break
         curves = [moved(curves[0], rim, beyond), *curves[1:]]
@@ -208,7 +208,7 @@ def find_outline(program: Path, process: Process, name: str, height: float | Non
         stopped = stopped or again
     write_curves(work / "outline.txt", outlines[best], f"dd3 outline {process.path.name}")
     write_deviations(work / "deviations.csv", "draw,largest,mean", found, 1)
-    print(f"outline of draw {best + 1}: {work / 'outline.txt'}")
+    LOG.info(f"outline of draw {best + 1}: {work / 'outline.txt'}")
     if stopped:
         raise Problem(f"draw {len(outlines)} stopped: {stopped}")
     return found

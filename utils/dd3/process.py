@@ -34,7 +34,7 @@ from typing import Any
 from dd3 import report as pages
 from dd3 import verdict
 from dd3.command import new_parser
-from dd3.errors import Problem
+from dd3.errors import LOG, Problem, Stopped
 from dd3.programs import add_program, command, find_program, launch, made_folder
 from dd3.run import read_job
 
@@ -44,10 +44,6 @@ OPERATION_KEYS: dict[str, type[Any]] = {"deck": str, "name": str, "set": dict}
 REPORT_KEYS: dict[str, type[Any]] = {"mirror": list, "section": list}
 STOPPED = 3  # exit code of a run that cannot go on
 LATER = "E152"  # code of the error of a sheet that is not there yet
-
-
-class Stopped(Problem):
-    """A run that cannot go on; its input has no errors."""
 
 
 @dataclass
@@ -188,9 +184,9 @@ def run_process(program: Path, process: Process, threads: int | None = None) -> 
     for operation in process.operations:
         again = run_operation(program, operation, threads)
         job = read_job(operation.folder)
-        print(f"{operation.name}: {'reached its end' if again else 'has ended before'}, "
+        LOG.info(f"{operation.name}: {'reached its end' if again else 'has ended before'}, "
               f"{job['counts']['increments']} increments, {job['seconds']:.4g} s, {len(job['warnings'])} warnings; "
-              f"results in {operation.folder}", flush=True)
+              f"results in {operation.folder}")
 
 
 def run_with(program: Path, process: Process, operations: Sequence[Operation], settings: Mapping[str, object],
@@ -210,12 +206,8 @@ def write_report(process: Process) -> Path:
     target = made_folder(process.path.parent / f"{process.path.stem}.report")
     rows = []
     for operation in process.operations:
-        words = [str(operation.folder), "--output", str(target / operation.name)]
-        if process.report.get("mirror"):
-            words += ["--mirror", *process.report["mirror"]]
-        for plane in process.report.get("section", []):
-            words += ["--section", plane]
-        page = pages.report_of(words)
+        page = pages.make(operation.folder, output=target / operation.name, mirror=process.report.get("mirror", []),
+                          section=[str(plane) for plane in process.report.get("section", [])])
         job, thinning = page.job, page.field("thinning")
         draw = page.field("equivalent_plastic_strain")
         largest = max((abs(page.column(f"{tool}_fz")).max() * page.whole / 1000 for tool in page.tools), default=0.0)

@@ -16,10 +16,11 @@ def each(items: Iterable[Item], title: str) -> Iterator[Item]:
 
 
 class Progress:
-    """A bar that is called with the fraction that is done."""
+    """A bar that is called with the fraction that is done; `shown` elsewhere than on a terminal too."""
 
-    def __init__(self, title: str) -> None:
-        self.bar = tqdm(desc=title, total=1.0, bar_format="{desc}: {percentage:3.0f}% |{bar}| {elapsed}", **STYLE)
+    def __init__(self, title: str, shown: bool = False) -> None:
+        style = {**STYLE, "disable": False, "leave": True} if shown else STYLE
+        self.bar = tqdm(desc=title, total=1.0, bar_format="{desc}: {percentage:3.0f}% |{bar}| {elapsed}", **style)
 
     def __call__(self, fraction: float) -> None:
         self.bar.update(fraction - self.bar.n)

@@ -6,10 +6,17 @@ import os
 import sys
 from typing import Any
 
+import matplotlib
+
 from dd3.errors import DEBIAN, Problem
 
 # Any of these libraries lets VTK draw without a display; without one, creating its window is a segmentation fault.
 LIBRARIES = ("libEGL.so.1", "libOSMesa.so.8", "libOSMesa.so.6")
+
+# Light on sheets and tools; colours of their outer and sharp edges, and of the edges of elements.
+SURFACE = {"ambient": 0.4, "diffuse": 0.7, "specular": 0.15, "specular_power": 20}
+EDGE, MESH = "#3a3f45", "#808488"
+FONT = matplotlib.get_data_path() + "/fonts/ttf/DejaVuSans.ttf"  # that of the figures
 
 
 class NoOpenGL(Problem):
@@ -34,3 +41,9 @@ def new_plotter(**options: Any) -> Any:
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
     pv.OFF_SCREEN = True
     return pv.Plotter(off_screen=True, **options)
+
+
+def use_font(text: Any) -> None:
+    """Set the font of a property of VTK's texts to that of the figures."""
+    text.SetFontFamilyAsString("File")
+    text.SetFontFile(FONT)

@@ -2,7 +2,9 @@
 """A run of dd3imp by its folder: tables, fields, and the description of the job."""
 
 import json
+from collections.abc import Sequence
 from functools import cached_property
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,10 +18,16 @@ except ModuleNotFoundError:  # Windows
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.figure import Figure
 
     from dd3.fields import Fields
+    from dd3.springback import Springback
+    from dd3.verdict import Item
 
 FORMAT, VERSIONS = "dd3imp run", (1, 2)
+# Module of a picture, and whether it takes several runs.
+FIGURES = {"force": ("dd3.plot.force", True), "increments": ("dd3.plot.increments", True),
+           "sheet": ("dd3.plot.sheet", False), "section": ("dd3.section", False)}
 TEXTS = {"phase", "point", "limiter", "outcome", "reason", "solver"}  # columns that are never numbers
 
 
@@ -29,6 +37,8 @@ class Run:
     history, status: the tables history.csv and status.csv; their units are in `attrs["units"]`.
     fields: the sheet at its steps, `fields[i]` a grid of pyvista, `fields.travel` the travel of each, mm.
     job: the description of the run, run.json; docs/run.schema.json says what it contains.
+
+    Messages on options name them as the commands do: --low-carbon-steel is the argument low_carbon_steel.
     """
 
     def __init__(self, folder: str | Path) -> None:
@@ -59,6 +69,90 @@ class Run:
 
     def __repr__(self) -> str:
         return f"dd3.open({str(self.folder)!r})"
+
+    def plot(self, kind: str = "force", **options: Any) -> "Figure":
+        """Return a figure of matplotlib of what `dd3 plot` draws; options are those of the command, as arguments.
+
+        force: tool force over tool displacement; tool, phase, component (motion, x, y, z, magnitude), factor, title.
+        increments: size of the increments and what limits it; phase, title.
+        sheet: the sheet between its tools; at (travel in mm, a phase, or several), field, cells, limits, view, mirror,
+        hide, and the other members of dd3.plot.sheet.Style.
+        levels: how often the elements were divided; the same.
+        section: fields along a section; plane, fields, at, lower.
+        limit: the forming limit diagram; at, surface (middle, upper, lower), and those of `judge`.
+        """
+        if kind == "limit":
+            from dd3.forming_limit import Criteria, figure
+            own = {name: options.pop(name) for name in ("at", "surface") if name in options}
+            return figure(self.folder, criteria=Criteria(**options), **own)[0]
+        if kind == "levels":
+            kind, options = "sheet", {"field": "level", "hide": ["all"], **options}
+        if kind not in FIGURES:
+            raise Problem(f"no picture '{kind}'; there are: {' '.join([*FIGURES, 'levels', 'limit'])}")
+        module, several = FIGURES[kind]
+        found: Figure = import_module(module).figure([self.folder] if several else self.folder, **options)
+        return found
+
+    def report(self, output: str | Path | None = None, *, mirror: Sequence[str] = (), section: Sequence[str] = (),
+               measured: Sequence[str | Path] = (), waves: float | None = None, tolerance: float | None = None,
+               **criteria: Any) -> Path:
+        """Write the page of `dd3 report`; return its path.
+
+        output: folder of page and pictures (report in that of the run). mirror: planes of symmetry to complete the
+        model at, such as "xy". section: planes such as "y=0" or an angle in degrees. measured: tables of measured
+        curves. waves, tolerance, criteria: those of `verdict`.
+        """
+        from dd3.forming_limit import Criteria
+        from dd3.report import make
+        return make(self.folder, output=output, mirror=mirror, section=section, measured=measured, waves=waves,
+                    tolerance=tolerance, criteria=Criteria(**criteria)).path
+
+    def view(self, window: bool = False, **options: Any) -> Path | None:
+        """Open the page of the run in the browser, made if it is missing or old; return its path. options: those of
+        `report`. window: show the sheet in a window of its own instead; options are field, at and mirror."""
+        from dd3.view import page_of, show_page, show_window
+        if window:
+            show_window(self.folder, **options)
+            return None
+        path = self.report(**options) if options else page_of(self.folder)
+        show_page(path)
+        return path
+
+    def sections(self, plane: str = "y=0", fields: Sequence[str] = ("thickness",), *, at: str | float | None = None,
+                 lower: bool = False) -> "pd.DataFrame":
+        """Return a section of the sheet as a table: lengths along it before and now, places before and now, mm, fields.
+
+        plane: x=0, y=12.5, or an angle in degrees from x; it cuts the initial sheet. at: travel in mm, or a phase (the
+        last step). lower: on the lower face in place of the upper one.
+        """
+        from dd3.section import sections_of
+        places = () if at is None else (str(at),)
+        return sections_of(self.folder, plane, lower=lower, at=places)[0][0].table(fields)
+
+    def springback(self, mirror: Sequence[str] = ()) -> "Springback | None":
+        """Return the drawn and the free shape after the best fit, with the distance of each node; None where the last
+        phase does not release all tools. mirror: planes of symmetry of the model, such as "xy"."""
+        from dd3.sheet import Sheet
+        from dd3.springback import find
+        return find(Sheet(self.folder), self.job["phases"], sorted(set("".join(mirror))))
+
+    def verdict(self, *, mirror: Sequence[str] = (), waves: float | None = None, tolerance: float | None = None,
+                **criteria: Any) -> "list[Item]":
+        """Return the verdict of `dd3 report`: items with name, answer (good, not good, doubtful, not judged), text.
+
+        waves: largest height of waves under a holder and in walls, mm. tolerance: largest distance of the free shape
+        from the drawn one, mm. criteria of the forming limit: curve (a file), engineering, low_carbon_steel, n, margin,
+        thinning, as the options of `dd3 fld`.
+        """
+        from dd3 import forming_limit, verdict
+        from dd3.sheet import Sheet
+        sheet, limit = Sheet(self.folder), forming_limit.Criteria(**criteria)
+        limits = forming_limit.find_limits(sheet, self.job, limit)
+        strains = forming_limit.strains_of(sheet, sheet.last, "middle")
+        found, sprung = forming_limit.judge(strains, limits, limit.margin), self.springback(mirror)
+        splits = verdict.splits(found.critical, found.said, strains.largest_thinning() > limits.thinning)
+        return verdict.judge(self.job, waves, splits,
+                             verdict.sprung(float(sprung.distance().max()) if sprung else None, tolerance))
 
 
 def read_frame(run: str | Path, name: str = "history.csv", *needed: str) -> "pd.DataFrame":

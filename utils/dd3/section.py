@@ -12,12 +12,13 @@ to bottom and flange and a circle to the wall; the results are the angles betwee
 flange, where the wall begins and ends, and the radius of the wall.
 """
 
-import argparse
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from dd3.command import new_parser
 from dd3.errors import Problem
@@ -136,8 +137,33 @@ def draw(sections: Sequence[Section], normal: np.ndarray, fields: Sequence[str],
         axes[0].legend(frameon=False)
 
 
-def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
-    """Return the options after their checks."""
+def sections_of(run: str | Path, plane_at: str = "y=0", *, nodes: Sequence[int] | None = None, lower: bool = False,
+                at: Sequence[str] = ()) -> tuple[list[Section], np.ndarray]:
+    """Return the section of the sheet of a run at some places (AT), by default at the last step, and the normal of its
+    plane: x=0, y=12.5, an angle from x; or the line through nodes. lower: on the lower face."""
+    sheet = Sheet(run)
+    normal, distance = plane(plane_at)
+    steps = [sheet.step_at(place) for place in at] or [sheet.last]
+    return [Section(sheet, sheet.line_of_nodes(nodes, step) if nodes
+                    else sheet.cut(normal, distance, not lower, step=step)[0], step) for step in steps], normal
+
+
+def figure_of(sections: Sequence[Section], normal: np.ndarray, fields: Sequence[str]) -> Figure:
+    """Return a figure of fields along sections in a plane."""
+    drawn, axes = new_figure((7, 3 * len(fields) + 3), len(fields) + 1, squeeze=False)
+    draw(sections, normal, fields, axes[:, 0])
+    return drawn
+
+
+def figure(run: str | Path, plane: str = "y=0", fields: Sequence[str] = ("thickness",), at: Sequence[str | float] = (),
+           lower: bool = False) -> Figure:
+    """Return a figure of fields along a section of the sheet of a run, at the last step or at several places."""
+    at = [at] if isinstance(at, str | float | int) else at
+    return figure_of(*sections_of(run, plane, lower=lower, at=[str(place) for place in at]), fields)
+
+
+def main(words: Sequence[str] | None = None) -> None:
+    """Draw, write and measure the section of the command line."""
     parser = new_parser("section", __doc__)
     parser.add_argument("run", metavar="RUN", help="folder of results, or its fields.vtkhdf")
     parser.add_argument("--plane", default="y=0", help="plane of the section: x=0, y=12.5, or an angle (y=0)")
@@ -153,24 +179,13 @@ def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
     options = parser.parse_args(words)
     if (options.bottom or options.flange) and not options.wall:
         parser.error("--bottom and --flange need --wall")
-    options.field = options.field or ["thickness"]
-    return options
-
-
-def main(words: Sequence[str] | None = None) -> None:
-    """Draw, write and measure the section of the command line."""
-    options = arguments(words)
-    sheet = Sheet(options.run)
-    normal, distance = plane(options.plane)
-    steps = [sheet.step_at(place) for place in options.at] if options.at else [sheet.last]
-    sections = [Section(sheet, sheet.line_of_nodes(options.nodes, step) if options.nodes
-                        else sheet.cut(normal, distance, not options.lower, step=step)[0], step) for step in steps]
-    figure, axes = new_figure((7, 3 * len(options.field) + 3), len(options.field) + 1)
-    draw(sections, normal, options.field, axes)
-    save(figure, options.output, 150)
+    fields = options.field or ["thickness"]
+    sections, normal = sections_of(options.run, options.plane, nodes=options.nodes, lower=options.lower,
+                                   at=options.at or ())
+    save(figure_of(sections, normal, fields), options.output, 150)
     print(options.output)
     if options.table:
-        sections[-1].table(options.field).to_csv(options.table, index=False, float_format="%.9g")
+        sections[-1].table(fields).to_csv(options.table, index=False, float_format="%.9g")
         print(options.table)
     if options.wall:
         ranges = {name: limits for name in ("bottom", "wall", "flange") if (limits := getattr(options, name))}

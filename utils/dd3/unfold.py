@@ -30,7 +30,7 @@ from scipy.spatial import cKDTree
 from dd3.account import Account
 from dd3.command import new_parser
 from dd3.curve import write_curves
-from dd3.errors import Problem
+from dd3.errors import LOG, Problem
 from dd3.gmsh_session import session
 from dd3.tools import faces as cad_faces
 from dd3.tools.cad import load, sew
@@ -86,8 +86,9 @@ def of_cad(path: Path, size: float | None, side: str | None, words: Sequence[str
         load(gmsh, path)
         account = Account()
         enter_cad(path, account, len(gmsh.model.getEntities(2)))
-        print(*(f"left out: {item}\n" for item in account.left_out()),
-              *(f"note: {note}\n" for note in sew(gmsh, path, 0.01, wanted=False)), sep="", end="")
+        for line in (*(f"left out: {item}" for item in account.left_out()),
+                     *(f"note: {note}" for note in sew(gmsh, path, 0.01, wanted=False))):
+            LOG.info(line)
         tags = [tag for _, tag in gmsh.model.getEntities(2)]
         if words:
             tags = cad_faces.chosen(gmsh, path, tags, words, smooth=True)
@@ -113,7 +114,7 @@ def of_facets(path: Path) -> Triangles:
     mesh = read_facets(path)
     for note in mesh.notes:
         if note.startswith("left out: "):
-            print(note)
+            LOG.info(note)
     quads = mesh.facets[:, 3] >= 0
     return Triangles(mesh.nodes, np.vstack((mesh.facets[:, :3], mesh.facets[quads][:, [0, 2, 3]])))
 

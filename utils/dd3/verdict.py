@@ -112,6 +112,17 @@ def supports(phases: Sequence[Ended]) -> list[Item]:
             for phase in phases if "W121" in phase.codes and (support := phase.closing["support"])]
 
 
+def pins(phases: Sequence[Ended]) -> list[Item]:
+    """Judge the bearing pressure of locating pins on their holes by the yield stress, at the largest force of each."""
+    carried = [(pin, phase) for phase in phases for pin in phase.closing.get("pins", [])]
+    largest = {pin["name"]: (pin, phase) for pin, phase in sorted(carried, key=lambda both: both[0]["force"])}
+    return [Item("pins", DOUBTFUL if pin["bearing_pressure"] > pin["yield_stress"] else GOOD,
+                 f"'{pin['name']}' of {pin['diameter']:g} mm carries up to {pin['force']:.3g} N in phase "
+                 f"'{phase.phase}', a bearing pressure of {pin['bearing_pressure']:.3g} MPa; yield stress of the sheet "
+                 f"there {pin['yield_stress']:.3g} MPa")
+            for pin, phase in largest.values() if pin["force"] > 0.0]
+
+
 def limit_text(option: str, limit: float | None) -> str:
     """Return the limit of an option."""
     return f" ({option} {limit:g} mm)" if limit is not None else f" (no limit: {option})"
@@ -141,7 +152,8 @@ def judge(job: dict[str, Any], waves: float | None, limits: Sequence[Item], spri
     waves: largest height under a holder and in walls, mm. limits, springback: items of `splits` and `sprung`.
     """
     phases = list(ended_phases(job))
-    return [end_of_run(job), *formed(phases, waves), *holders(phases, waves), *limits, *springback, *supports(phases)]
+    return [end_of_run(job), *formed(phases, waves), *holders(phases, waves), *limits, *springback, *supports(phases),
+            *pins(phases)]
 
 
 def summary(items: Sequence[Item]) -> str:

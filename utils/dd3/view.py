@@ -15,8 +15,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from dd3 import report
 from dd3.command import new_parser
 from dd3.errors import Problem
@@ -27,12 +25,18 @@ RESULTS = ("fields.vtkhdf", "history.csv", "status.csv", "run.json")
 FIELD = "equivalent_plastic_strain"  # of the window
 
 
-def page_of(run: Path, words: Sequence[str]) -> Path:
-    """Return the page of a run with options of `dd3 report`, made where it is missing or old."""
+def page_of(run: Path, **settings: Any) -> Path:
+    """Return the page of a run, made where it is missing or old, or with settings of `report.make`."""
     page = run / "report" / "report.html"
-    if words or is_old(page, run):
-        page = report.report_of([str(run), *words]).path
+    if settings or is_old(page, run):
+        page = report.make(run, **settings).path
     return page
+
+
+def show_page(page: Path) -> None:
+    """Open a page in the browser."""
+    if not webbrowser.open(page.resolve().as_uri()):
+        raise Problem(f"no browser is found; open this file in one: {page.resolve()}")
 
 
 def is_old(page: Path, run: Path) -> bool:
@@ -41,21 +45,19 @@ def is_old(page: Path, run: Path) -> bool:
     return not page.is_file() or page.stat().st_mtime < max(times, default=0.0)
 
 
-def show_window(run: Path, options: argparse.Namespace) -> None:
-    """Show the sheet of a run in a window, with a slider for its steps, until it is closed."""
+def show_window(run: Path, field: str | None = None, at: str | None = None, mirror: Sequence[str] = ()) -> None:
+    """Show a field of the sheet of a run in a window, from a step on, with a slider for its steps, until it is
+    closed."""
     if not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise Problem("--window: there is no display; without --window the page opens in a browser")
     import pyvista as pv
-    one, chosen = pictures.Run(run), pictures.arguments([str(run), "--field", options.field or FIELD])
-    chosen.mirror = sorted(set(options.mirror))
-    steps, tools = list(range(one.count)), pictures.find_tools(one, chosen)
-    limits, box = pictures.limits_of(one, steps, chosen), pictures.box_of(one, steps, chosen, tools)
+    one, chosen = pictures.Run(run), pictures.Style(field or FIELD, mirror=mirror)
+    steps, tools = list(range(one.count)), pictures.find_tools(one)
+    limits, box = pictures.limits_of(one, steps, chosen), pictures.box_of(one, steps, chosen.mirror, tools)
     pv.OFF_SCREEN = False
     plotter: Any = pv.Plotter(title=f"{run}: {chosen.field}")
     plotter.set_background("white")
     label = one.mesh(one.last, chosen.field, chosen.cells)[1]
-    bar = pv.DataSetMapper(pv.PointSet(np.zeros((1, 3))))
-    bar.lookup_table = pv.LookupTable(chosen.colours, scalar_range=limits)
     shown: list[str] = []
 
     def show(value: float) -> None:
@@ -67,9 +69,9 @@ def show_window(run: Path, options: argparse.Namespace) -> None:
         shown[:] = added
         plotter.camera_position, plotter.camera.parallel_scale = place, scale  # where it was moved to
 
-    plotter.add_scalar_bar(title=label, mapper=bar, vertical=True, fmt="%.3g", color="black", title_font_size=16)
+    pictures.add_bar(plotter, label, limits, chosen.colours, vertical=True, title_font_size=16)
     pictures.aim(plotter, box, chosen)
-    plotter.add_slider_widget(show, [0, one.last], value=one.step_at(options.at) if options.at else one.last,
+    plotter.add_slider_widget(show, [0, one.last], value=one.step_at(at) if at else one.last,
                               title="step", fmt="%.0f", pointa=(0.3, 0.08), pointb=(0.7, 0.08))
     plotter.show()
 
@@ -88,12 +90,12 @@ def main(words: Sequence[str] | None = None) -> None:
     if options.window:
         window = argparse.ArgumentParser("dd3 view --window")
         window.add_argument("--mirror", nargs="+", default=[])
-        options.mirror = window.parse_args(others).mirror
-        show_window(options.run, options)
+        show_window(options.run, options.field, options.at, window.parse_args(others).mirror)
         return
     if options.field or options.at:
         parser.error("--field and --at go with --window; the page has all fields and steps")
-    page = page_of(options.run, others)
+    settings = report.parsed([str(options.run), *others]) if others else {}
+    page = page_of(options.run, **{name: value for name, value in settings.items() if name not in ("run", "verdict")})
     print(page)
-    if not options.no_browser and not webbrowser.open(page.resolve().as_uri()):
-        raise Problem(f"no browser is found; open this file in one: {page.resolve()}")
+    if not options.no_browser:
+        show_page(page)

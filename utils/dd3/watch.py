@@ -10,7 +10,6 @@ options. The time left is that of the phase, if its rest goes on as the phase ha
 run does not reach its end.
 """
 
-import argparse
 import sys
 import time
 from collections.abc import Sequence
@@ -66,10 +65,13 @@ def leader_of(history: pd.DataFrame, phase: str) -> str | None:
 
 
 class Watch:
-    """A run that is watched: its folder, what is written of its steps, and how many of them there were."""
+    """A run that is watched: its folder, seconds between two looks, what is written of its steps (a picture in a style,
+    the page with settings of `report.make`), and how many steps there were."""
 
-    def __init__(self, options: argparse.Namespace, words: Sequence[str]) -> None:
-        self.options, self.words, self.steps, self.said = options, list(words), 0, ""
+    def __init__(self, folder: Path, every: float = 2.0, picture: Path | None = None,
+                 style: pictures.Style | None = None, page: dict[str, Any] | None = None) -> None:
+        self.folder, self.every, self.picture, self.style, self.page = folder, every, picture, style, page
+        self.steps, self.said = 0, ""
         self.live = sys.stdout.isatty()
 
     def tell(self, text: str) -> None:
@@ -81,7 +83,7 @@ class Watch:
 
     def look(self) -> dict[str, Any] | None:
         """Tell the state of the run; return its description, None while there is none."""
-        folder = self.options.run
+        folder = self.folder
         if not (folder / "run.json").is_file():
             if not is_held(folder / "job.log"):
                 raise Problem(f"{folder}: no run is going on, and there are no results")
@@ -96,14 +98,12 @@ class Watch:
 
     def draw(self) -> None:
         """Draw the sheet, or write the page, where there is a new step."""
-        if not (self.options.picture or self.options.page) or (count := Fields(self.options.run).count) == self.steps:
+        if not (self.picture or self.page) or (count := Fields(self.folder).count) == self.steps:
             return
-        run = str(self.options.run)
-        if self.options.page:
-            report.report_of([run, *self.words])
-        if self.options.picture:
-            pictures.make_picture(pictures.Run(run), pictures.arguments(
-                [run, "--field", self.options.field, "--output", str(self.options.picture)]))
+        if self.page:
+            report.make(**self.page)
+        if self.picture:
+            pictures.make_picture(pictures.Run(self.folder), self.style or pictures.Style(), self.picture)
         self.steps = count
 
     def follow(self) -> dict[str, Any]:
@@ -119,7 +119,7 @@ class Watch:
                 # The fields, or a step of them, are being written: they are drawn at the next look.
             if job is not None and ended:
                 return job
-            time.sleep(self.options.every)
+            time.sleep(self.every)
 
 
 def main(words: Sequence[str] | None = None) -> None:
@@ -137,7 +137,9 @@ def main(words: Sequence[str] | None = None) -> None:
         parser.error("--every takes a positive number")
     if not options.run.is_dir():
         raise Problem(f"{options.run}: No such folder")
-    watch = Watch(options, others)
+    page = report.parsed([str(options.run), *others]) if options.page else {}
+    page.pop("verdict", None)
+    watch = Watch(options.run, options.every, options.picture, pictures.Style(options.field), page)
     job = watch.follow()
     outcome, seconds = job["outcome"], job.get("seconds")
     end = "reached its end" if outcome["state"] == "reached" else f"ended: {outcome['message'] or outcome['state']}"

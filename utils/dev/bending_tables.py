@@ -17,13 +17,13 @@ import statistics
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from bending_study.runs import NOTE, Run, differences, run_once
 from dd3.errors import Problem
 from dd3.errors import run as run_main
 from dd3.pages import put_table, table
 from dd3.programs import find_program
 from dd3.progress import each
 from dd3.run import read_job
-from dd3.study.runs import NOTE, Run, differences, run_once
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "input_files" / "bending"

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draw the pictures of docs/laws: one for each yield criterion, hardening law and back-stress law.
+"""Draw the pictures of docs/laws: one for each yield criterion, hardening law, back-stress law and the chord modulus.
 
     utils/dev/law_pictures.py --program build/release/dd3imp
     utils/dev/law_pictures.py hill48 swift --program build/release/dd3imp --output /tmp
@@ -8,7 +8,7 @@
 Materials and paths are those of input_files/laws/<law>.dat; all values come from runs of the program. Criteria: the
 yield surface with its normals, r-values and yield stresses by angle; the broken line is the surface of von Mises.
 Hardening laws: tension as true and as nominal stress, with a dot at the largest force. Back-stresses and laws that
-depend on the strain path: reversals and changes of the path.
+depend on the strain path: reversals and changes of the path. Chord modulus: tension with unloadings.
 """
 
 import argparse
@@ -186,6 +186,43 @@ def teodosiu_hu(program, law, figure):
     axes[1].set(title="orthogonal")
 
 
+def yoshida_uemori(program, law, figure):
+    """Draw cycles with and without stagnation, and compression after tension."""
+    points = deck_run(program, law)
+    axes, names = figure.subplots(1, 2), labels(law)
+    for name, style in (("cycles_without_stagnation", BROKEN), ("cycles", {"color": "C0"})):
+        strain, stress = columns(points[name], "e11", "s11")
+        axes[0].plot(100 * strain, stress, **{**style, "label": names[name]})
+    for number, name in enumerate(("tension", "compression_after_0.05", "compression_after_0.1")):
+        strain, stress = columns(points[name], "eqps", "s11")
+        flows = np.diff(strain, prepend=0) > 1e-9
+        stress = np.where(flows & (stress * (1 if number == 0 else -1) > 0), abs(stress), np.nan)
+        style = BROKEN if number == 0 else {"color": f"C{number - 1}"}
+        axes[1].plot(strain, stress, **{**style, "label": names[name]})
+    axes[0].set(xlabel="logarithmic strain (%)", ylabel="true stress (MPa)", title="cycles")
+    axes[1].set(xlabel="equivalent plastic strain", title="reversed", ylim=(0, None))
+    for part in axes:
+        legend(part, loc="lower right")
+
+
+def chord(program, law, figure):
+    """Draw tension with unloadings, and the modulus of each over the plastic strain."""
+    points = deck_run(program, law)
+    axes, names = figure.subplots(1, 2), labels(law)
+    for name, style in (("constant", BROKEN), ("chord", {"color": "C0"}), ("table", {"color": "C1"})):
+        strain, stress, plastic = columns(points[name], "e11", "s11", "eqps")
+        ends = np.flatnonzero(np.isclose(stress, 0, atol=1e-6))[1:]
+        modulus = stress[ends - 1] / (strain[ends - 1] - strain[ends]) / 1000
+        style = {**style, "label": names[name]}
+        last = slice(ends[-1] - 1, ends[-1] + 1)
+        axes[0].plot(1000 * (strain[last] - strain[ends[-1] - 1]), stress[last], **style)
+        axes[1].plot(plastic[ends], modulus, **{**style, "marker": "o"})
+    axes[0].set(xlabel="strain recovered (0.001)", ylabel="true stress (MPa)", title="last unloading")
+    axes[1].set(xlabel="equivalent plastic strain", ylabel="Young's modulus (GPa)", title="slope of the unloadings")
+    for part in axes:
+        legend(part)
+
+
 def columns(rows, *keys):
     """Return columns of rows."""
     return [np.array([row[key] for row in rows]) for key in keys]
@@ -199,7 +236,8 @@ PICTURES = {
     "yld2004": (orthotropic, {"measured": ALLOY}), "cpb06": (orthotropic, {"compression": True}),
     **{law: (tension, {}) for law in ("perfect", "linear", "swift", "voce", "swift_voce", "ludwik",
                                       "hockett_sherby")},
-    "table": (tension, {"points_of": TABLE}), "teodosiu_hu": (teodosiu_hu, {}), "prager": (prager, {}),
+    "table": (tension, {"points_of": TABLE}), "teodosiu_hu": (teodosiu_hu, {}),
+    "yoshida_uemori": (yoshida_uemori, {}), "chord": (chord, {}), "prager": (prager, {}),
     "lemaitre_chaboche": (lemaitre_chaboche, {}),
 }
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Make the pages of docs/reports anew, and check their stamps.
+"""Make the pages of docs/reports and the gallery anew, and check their stamps.
 
     utils/dev/pages.py                    all that together take less than an hour, the quick ones first
     utils/dev/pages.py rail square_cup    these
@@ -29,6 +29,7 @@ from dd3.programs import description, find_program, made_folder
 
 ROOT = Path(__file__).resolve().parents[2]
 REPORTS = ROOT / "docs" / "reports"
+GALLERY = ROOT / "docs" / "gallery.md"
 BLOCK = re.compile(r"<!-- table: (.*?) -->\n(.*?)<!-- end of table -->\n", re.DOTALL)
 TABLE = re.compile(r"(<!-- no measurement -->\n)?((?:^\|.*\n)+)(?=\n*(.*))", re.MULTILINE)
 ONCE = "measured once"  # stamp of a table that no script makes
@@ -82,9 +83,9 @@ PAGES = {
     "bending_criteria": Page(2, f"{BENDING} tests/cases/bending_criteria",
                              (f"tests/benchmark/bending_criteria.py{RUN}",)),
     "bending_study": Page(25, f"{BENDING} input_files/bending_study", (
-        "-m dd3 study run --program {program} --work {work} --cores 1",
-        "-m dd3 study figures --work {work} --output docs/images",
-        "-m dd3 study report docs/reports/bending_study.md --work {work}")),
+        "-m bending_study run --program {program} --work {work} --cores 1",
+        "-m bending_study figures --work {work} --output docs/images",
+        "-m bending_study report docs/reports/bending_study.md --work {work}")),
     "bending_test": Page(6, BENDING, (
         "utils/dev/bending_tables.py --program {program} --work {work} --reuse --write docs/reports/bending_test.md",)),
     "capstan": Page(1, f"{MECHANICS} tests/cases/capstan", (f"tests/capstan/run.py{RUN}",)),
@@ -95,6 +96,8 @@ PAGES = {
                                    envelope("--layers --write"))),
     "default_settings": Page(4, BENDING, (f"tests/benchmark/default_settings.py{RUN}",)),
     "draw_bending": forming("draw_bending", 25),
+    "gallery": Page(10, f"{MECHANICS} src/run/adaptivity.f90 src/sheet input_files utils/dd3/plot", (
+        "utils/dev/gallery.py --program {program} --work {work} --write",)),
     "increments": Page(15, MECHANICS, (f"tests/benchmark/increments.py{RUN}",)),
     "pages": Page(20, f"{MECHANICS} input_files utils/dd3/report.py", (f"utils/dev/report_pages.py{RUN}",)),
     "processes": Page(8, f"src/linalg src/parallel {MECHANICS}", (
@@ -135,9 +138,14 @@ def later(commit: str, sources: str) -> int:
     return int(done.stdout) if done.returncode == 0 else 0
 
 
+def files() -> dict[str, Path]:
+    """Return the pages by their names."""
+    return {path.stem: path for path in [*sorted(REPORTS.glob("*.md")), GALLERY]}
+
+
 def age(name: str) -> tuple[str, int]:
     """Return the oldest stamp of a page, and the number of later commits to its sources."""
-    stamps = dict.fromkeys(made((REPORTS / f"{name}.md").read_text(encoding="utf-8")))
+    stamps = dict.fromkeys(made(files()[name].read_text(encoding="utf-8")))
     changes, commit, date = max(((later(commit, PAGES[name].sources), commit, date) for commit, date in stamps),
                                 default=(0, "no table", "is made"))
     return f"{commit} {date}", changes
@@ -153,14 +161,15 @@ def without_stamp(text: str) -> list[str]:
 
 def check() -> None:
     """Print the old pages, and the errors; exit code 1 if there are any."""
-    files = {path.stem: path.read_text(encoding="utf-8") for path in sorted(REPORTS.glob("*.md"))}
-    wrong = [f"docs/reports/{name}.md: {problem}" for name, text in files.items() for problem in without_stamp(text)]
-    wrong += [f"utils/dev/pages.py: {name} is " + ("not in PAGES" if name in files else "no page")
-              for name in sorted(files.keys() ^ PAGES.keys())]
-    for name in sorted(files.keys() & PAGES.keys()):
+    pages = files()
+    wrong = [f"{path.relative_to(ROOT)}: {problem}" for path in pages.values()
+             for problem in without_stamp(path.read_text(encoding="utf-8"))]
+    wrong += [f"utils/dev/pages.py: {name} is " + ("not in PAGES" if name in pages else "no page")
+              for name in sorted(pages.keys() ^ PAGES.keys())]
+    for name in sorted(pages.keys() & PAGES.keys()):
         stamp, changes = age(name)
         if changes:
-            print(f"old: docs/reports/{name}.md, {stamp}: {changes} later commits change what it depends on")
+            print(f"old: {pages[name].relative_to(ROOT)}, {stamp}: {changes} later commits change what it depends on")
     if wrong:
         sys.exit("\n".join(wrong))
 

@@ -173,8 +173,9 @@ contains
 
     call limit_at(self, path, limit, slope, next)
     stiffness = self%stiffness
-    if (stiffness > 0.0_wp .and. abs(force) >= at_limit*limit) &
-        stiffness = stiffness*slope/(stiffness + slope)
+    if (stiffness > 0.0_wp .and. abs(force) >= at_limit*limit) then
+      stiffness = stiffness*slope/(stiffness + slope)
+    end if
   end function sliding_stiffness
 
   !> Evaluate the limit of the restraining force.

@@ -96,8 +96,8 @@ contains
     grip = closed(model, state, bead, height)
   end function grip
 
-  !> Return the fraction that is left of what acts in a bead until its tool, without one the farthest
-  !> of all, has opened by so many thicknesses.
+  !> Return the fraction that is left of what acts in a bead until its tool, without one the
+  !> farthest of all, has opened by so many thicknesses.
   pure real(wp) function closed(model, state, bead, opening)
     type(model_t), intent(in) :: model
     class(configuration_t), intent(in) :: state
@@ -394,8 +394,9 @@ contains
 
     integer :: b
 
-    if (size(self%length) > 0) &
-        row = [row, [(self%restraint(b), self%length(b), b=1, size(self%length))], self%work]
+    if (size(self%length) > 0) then
+      row = [row, [(self%restraint(b), self%length(b), b=1, size(self%length))], self%work]
+    end if
   end subroutine values
 
   !> Extend the nodal values by those of new nodes, and carry force and path over to the intervals,

@@ -30,7 +30,8 @@ module dd3_model_terms_loads
 
   !> The term.
   type, extends(term_t) :: loads_t
-    !> Total force on each set, and those at the start and at the end of the phase, `(3, n_load)`, N.
+    !> Total force on each set, and those at the start and at the end of the phase, `(3, n_load)`,
+    !> N.
     real(wp), allocatable :: now(:, :), start(:, :), final(:, :)
     !> Forces of the nodes on what lays the sheet down, at the start of the phase, and what is left
     !> of them with their springs, `(3, n_node)`, N.
@@ -74,8 +75,8 @@ contains
     spring_stiffness = norm2(force)/(spring_length*thickness)
   end function spring_stiffness
 
-  !> Return the fraction of the forces that lay a sheet down, and of their springs, that is left at a
-  !> progress of the phase. It falls by the same factor in equal increments: the sheet is softer
+  !> Return the fraction of the forces that lay a sheet down, and of their springs, that is left at
+  !> a progress of the phase. It falls by the same factor in equal increments: the sheet is softer
   !> than the springs at first by four or more decades, and sags where they are alike.
   pure real(wp) function laying_factor(progress)
     real(wp), intent(in) :: progress
@@ -228,8 +229,9 @@ contains
     associate (factor => model%phase(trial%phase)%factor(trial%progress))
       self%now = self%start + factor*(self%final - self%start)
     end associate
-    if (self%lays_down()) &
-        self%laying_left = laying_factor(trial%progress)*self%laying_forces(model, trial)
+    if (self%lays_down()) then
+      self%laying_left = laying_factor(trial%progress)*self%laying_forces(model, trial)
+    end if
   end subroutine evaluate
 
   !> Add the forces on the nodes.
@@ -278,7 +280,8 @@ contains
     magnitude = maxval([0.0_wp, norm2(self%start, dim=1), norm2(self%final, dim=1)])
   end function magnitude
 
-  !> Distribute what lays the sheet down by the masses of the nodes of the refined sheet, as its weight.
+  !> Distribute what lays the sheet down by the masses of the nodes of the refined sheet, as its
+  !> weight.
   subroutine extend(self, old_model, model, state)
     class(loads_t), intent(inout) :: self
     type(model_t), intent(in) :: old_model, model

@@ -19,7 +19,8 @@ module dd3_model_terms_pressures
 
   !> The term.
   type, extends(term_t) :: pressures_t
-    !> Pressure on each set, and those at the start and at the end of the phase, `(n_pressure)`, MPa.
+    !> Pressure on each set, and those at the start and at the end of the phase, `(n_pressure)`,
+    !> MPa.
     real(wp), allocatable :: now(:), start(:), final(:)
   contains
     procedure :: begin_phase

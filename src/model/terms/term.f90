@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Term of the equilibrium: something that acts on the nodes of the sheet, with its part of the state
-!> and all that it does to forces, stiffness, work and results. The state has a list of them
+!> Term of the equilibrium: something that acts on the nodes of the sheet, with its part of the
+!> state and all that it does to forces, stiffness, work and results. The state has a list of them
 !> (list.f90), and the corrector knows the list alone. A procedure that a term does not need does
 !> nothing.
 !>
@@ -106,7 +106,8 @@ contains
     type(configuration_t), intent(in) :: committed, trial
   end subroutine evaluate
 
-  !> Add the forces on the nodes that stay at the end of the running phase, at the present positions.
+  !> Add the forces on the nodes that stay at the end of the running phase, at the present
+  !> positions.
   subroutine add_final_force(self, model, state, force)
     class(term_t), intent(in) :: self
     type(model_t), intent(in) :: model

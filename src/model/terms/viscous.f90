@@ -26,8 +26,8 @@ module dd3_model_terms_viscous
 
   !> The term.
   type, extends(term_t) :: viscous_t
-    !> Sum of the coefficients of the nodes in the running increment, and at first in the next, N/mm;
-    !> 0 without viscous forces.
+    !> Sum of the coefficients of the nodes in the running increment, and at first in the next,
+    !> N/mm; 0 without viscous forces.
     real(wp) :: strength = 0.0_wp
     !> Coefficient of each node, its force over its displacement in the increment, by its volume,
     !> `(n_node)`, N/mm; not allocated without viscous forces.
@@ -138,7 +138,8 @@ contains
     stronger = range(1)
     if (strength < range(1)) return
     factor = (range(2)/range(1))**(1.0_wp/real(reached - 1, wp))
-    stronger = strength*merge(factor, growth, strength*factor <= range(2)*(1.0_wp + epsilon(factor)))
+    stronger = strength*merge(factor, growth, &
+        strength*factor <= range(2)*(1.0_wp + epsilon(factor)))
   end function stronger
 
   !> Whether viscous forces go on in the next increment: those above the strength after the second

@@ -20,7 +20,6 @@ from pathlib import Path
 
 import numpy as np
 
-from dd3 import tool as tools
 from dd3.account import LeftOut
 from dd3.command import new_parser
 from dd3.dyna.blank import Blank, blank_of, with_sets
@@ -33,6 +32,8 @@ from dd3.errors import Problem, run
 from dd3.mesh import set_name, write_inp
 from dd3.programs import made_folder
 from dd3.progress import each
+from dd3.tools.one_tool import made
+from dd3.tools.settings import ToolSettings
 from dd3.tools.surface import write
 
 RIGID = 20
@@ -229,11 +230,12 @@ class Import:
             for number in tool.parts:
                 words += ["--part", str(number)]
             words += ["--sew", f"{SEW:g}"]
-            options = tools.arguments([*words, "--tolerance", "1000"])
-            surface, _, result = tools.made(options)
+            target = folder / f"{tool.name}.bez"
+            surface, _, result = made(ToolSettings(self.deck.path, target, toward.tolist(), self.units.length, sew=SEW,
+                                                   tolerance=1000.0, part=[str(number) for number in tool.parts]))
             if result.errors:
                 raise Problem(f"tool {tool.name}: {'; '.join(result.errors)}; alone: dd3 tool {' '.join(words)}")
-            write(options.target, surface, [f"{self.deck.path.name}: dd3 tool {' '.join(words[2:])}"])
+            write(target, surface, [f"{self.deck.path.name}: dd3 tool {' '.join(words[2:])}"])
             estimate = next((line.strip() for line in result.lines if "estimated" in line), "")
             self.notes.append(f"tool {tool.name}: {len(surface.net)} patches, {' '.join(estimate.split())}")
 
@@ -258,7 +260,8 @@ class Import:
                  f"# {self.material.keyword} {self.part.material}.", "*MATERIAL blank",
                  f"  young = {self.law.young:g}", f"  poisson = {self.law.poisson:g}",
                  f"  yield = {self.law.criterion}", f"  hardening = {self.law.hardening}",
-                 *(f"  backstress = {law}" for law in self.law.backstresses)]
+                 *(f"  backstress = {law}" for law in self.law.backstresses),
+                 *([f"  modulus = {self.law.modulus}"] if self.law.modulus else [])]
         if self.law.density:
             lines.append(f"  density = {self.law.density:.6g}")
         if self.law.rolling:

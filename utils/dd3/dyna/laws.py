@@ -3,19 +3,31 @@
 
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
 
 import numpy as np
 
 from dd3.dyna.cards import Card, Row
 from dd3.dyna.deck import Deck
+from dd3.dyna.hardening import (
+    Law,
+    Units,
+    by_curve,
+    chaboche,
+    first_strain,
+    linear,
+    positive,
+    slope,
+    swift,
+    yoshida_uemori,
+)
 from dd3.dyna.planar import barlat89_at, yld2000_at
 from dd3.errors import Problem
 
 NAMES = {"RIGID": 20, "PIECEWISE_LINEAR_PLASTICITY": 24, "3-PARAMETER_BARLAT": 36, "HILL_3R": 122,
          "TRANSVERSELY_ANISOTROPIC_ELASTIC_PLASTIC": 37, "BARLAT_YLD2000": 133, "PLASTIC_KINEMATIC": 3,
-         "POWER_LAW_PLASTICITY": 18}
-READ = "003, 018, 024, 036, 037, 122, 133"
+         "POWER_LAW_PLASTICITY": 18, "KINEMATIC_HARDENING_TRANSVERSELY_ANISOTROPIC": 125,
+         "KINEMATIC_HARDENING_BARLAT89": 226}
+READ = "003, 018, 024, 036, 037, 122, 125, 133, 226"
 # Units by Young's modulus of a metal: its range, the factors on lengths and on stresses, mm and MPa here.
 UNITS = {"mm MPa": (3e4, 4.5e5, 1.0, 1.0), "mm GPa": (30.0, 450.0, 1.0, 1e3), "m Pa": (3e10, 4.5e11, 1e3, 1e-6)}
 ROWS = {3: ("MID RO E PR SIGY ETAN BETA", "SRC SRP FS VP"),
@@ -26,62 +38,20 @@ ROWS = {3: ("MID RO E PR SIGY ETAN BETA", "SRC SRP FS VP"),
         36: ("MID RO E PR HR P1 P2 ITER", "M R00 R45 R90 LCID E0 SPI P3"),
         37: ("MID RO E PR SIGY ETAN R HLCID", "unused1 unused2 unused3 ICFLD unused5 STRAINLT"),
         122: ("MID RO E PR HR P1 P2", "R00 R45 R90 LCID E0"),
-        133: ("MID RO E PR FIT BETA ITER ISCALE", "K E0 N C P HARD A")}
+        125: ("MID RO E PR R HLCID OPT", "CB Y SC K RSAT SB H SC2", "EA COE IOPT C1 C2"),
+        133: ("MID RO E PR FIT BETA ITER ISCALE", "K E0 N C P HARD A"),
+        226: ("MID RO E PR M R00 R45 R90", "CB Y SC K RSAT SB H HLCID", "AOPT IOPT C1 C2 unused EA COE")}
 CHABOCHE = "CRC1 CRA1 CRC2 CRA2 CRC3 CRA3 CRC4 CRA4"
 AXES = {36: ("AOPT C P VLCID unused PB NLP HTB", "unused1 unused2 unused3 A1 A2 A3 HTC HTD",
              "V1 V2 V3 D1 D2 D3 BETA HTFLAG"),
         122: ("AOPT", "unused1 unused2 unused3 A1 A2 A3", "V1 V2 V3 D1 D2 D3 BETA"),
-        133: ("AOPT OFFANG P4 HTFLAG HTA HTB HTC HTD", "unused1 unused2 unused3 A1 A2 A3", "V1 V2 V3 D1 D2 D3 USRFAIL")}
+        133: ("AOPT OFFANG P4 HTFLAG HTA HTB HTC HTD", "unused1 unused2 unused3 A1 A2 A3", "V1 V2 V3 D1 D2 D3 USRFAIL"),
+        226: (ROWS[226][2], "XP YP ZP A1 A2 A3", "V1 V2 V3 D1 D2 D3 BETA")}
 RATES = "the flow stress does not depend on the strain rate here"
 FAILURE = "failure is not available"
 HEAT = "temperatures and heat treatment are not available"
 METAL = 5e-10, 2.5e-8  # densities, t/mm3
 LARGEST_R = 10.0
-SOFT_STRAINS = (0.0, 0.0005, 0.001, 0.002, 0.003, 0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.04, 0.06, 0.08, 0.1, 0.15,
-                0.2, 0.3, 0.4, 0.6, 0.8, 1.0)  # of a table that replaces a law
-
-
-@dataclass(frozen=True)
-class Units:
-    """Factors from a deck to mm and MPa."""
-
-    name: str
-    length: float
-    stress: float
-
-    @property
-    def force(self) -> float:
-        """The factor on forces."""
-        return self.stress * self.length**2
-
-    @property
-    def time(self) -> float:
-        """The factor on times to s: mm and GPa go with kg and ms, the others with s."""
-        return 1e-3 if self.name == "mm GPa" else 1.0
-
-    @property
-    def density(self) -> float:
-        """The factor on densities to t/mm3."""
-        return self.stress * self.time**2 / self.length**2
-
-    @property
-    def acceleration(self) -> float:
-        """The factor on accelerations to mm/s2."""
-        return self.length / self.time**2
-
-
-@dataclass
-class Law:
-    """The entries of a *MATERIAL, and notes on what differs."""
-
-    young: float
-    poisson: float
-    criterion: str
-    hardening: str
-    rolling: tuple[float, ...] | None = None
-    backstresses: list[str] = field(default_factory=list)
-    density: float = 0.0
-    notes: list[str] = field(default_factory=list)
 
 
 def number_of(card: Card) -> int:
@@ -115,7 +85,8 @@ def law_of(deck: Deck, card: Card, units: Units, axes: np.ndarray) -> Law:
     """Return the laws of a material; `axes` are the first edge and the normal of the blank's first element."""
     number = number_of(card)
     readers: dict[int, Callable[[Deck, Card, Units, Law], int]] = {
-        3: bilinear, 18: power_law, 24: piecewise, 36: barlat_lian, 37: transverse, 122: hill, 133: yld2000}
+        3: bilinear, 18: power_law, 24: piecewise, 36: barlat_lian, 37: transverse, 122: hill,
+        125: two_surfaces, 133: yld2000, 226: two_surfaces_barlat}
     if number not in readers:
         raise Problem(f"{card.place}: error: the material {card.keyword} of the blank is not read; expected *MAT_ "
                       + READ)
@@ -152,57 +123,9 @@ def use_rigid(card: Card) -> None:
         row.leave("a tool moves as its motions and forces say" if i else "a tool is rigid")
 
 
-def positive(value: float, name: str, place: str) -> float:
-    """Return a value; a Problem unless it is positive."""
-    if not value > 0:
-        raise Problem(f"{place}: error: {name} = {value:g}; expected a number > 0")
-    return value
-
-
 def hill48(r: Sequence[float]) -> str:
     """Return Hill's criterion by the r-values at 0, 45 and 90 degrees."""
     return "hill48 " + " ".join(f"r{angle}={value:.6g}" for angle, value in zip((0, 45, 90), r))
-
-
-def linear(units: Units, law: Law, stress: float, tangent: float, place: str, part: float = 1.0) -> str:
-    """Return linear hardening, a part of it, by yield stress and tangent modulus, in units of the deck."""
-    stress = positive(stress, "yield stress", place) * units.stress
-    if not 0 <= tangent * units.stress < law.young:
-        raise Problem(f"{place}: error: a tangent modulus of {tangent * units.stress:g} MPa; expected 0 to E")
-    return f"linear Y0={stress:.8g} H={part * slope(units, law, tangent):.8g}"
-
-
-def slope(units: Units, law: Law, tangent: float) -> float:
-    """Return the slope of the flow stress over the plastic strain by a tangent modulus."""
-    return law.young * tangent * units.stress / (law.young - tangent * units.stress)
-
-
-def swift(units: Units, law: Law, values: tuple[float, float, float], place: str) -> str:
-    """Return Swift's law by K, n and e0."""
-    factor, exponent, start = (positive(value, name, place) for value, name in zip(values, ("K", "n", "e0")))
-    if exponent > 1:
-        raise Problem(f"{place}: error: a hardening exponent of {exponent:g}; expected at most 1")
-    return f"swift K={factor * units.stress:.8g} e0={start:.8g} n={exponent:.8g}"
-
-
-def by_curve(deck: Deck, number: int, units: Units, law: Law, place: str) -> str:
-    """Return hardening by points of plastic strain and flow stress."""
-    if number in deck.curves.tables:
-        law.notes.append("hardening: the curve of the lowest strain rate; rates are not available")
-    curve = deck.curves.get(number, place)
-    strain, stress = curve.x.copy(), curve.y * units.stress
-    for i in range(len(strain)):
-        if strain[i] < 0:
-            raise Problem(f"{curve.places[i]}: error: a plastic strain of {strain[i]:g} in a hardening curve")
-        if not 1e-5 * law.young < stress[i] < 0.1 * law.young:
-            raise Problem(f"{curve.places[i]}: error: a flow stress of {stress[i]:g} MPa at the plastic strain "
-                          f"{strain[i]:g}; expected {1e-5 * law.young:g} to {0.1 * law.young:g} MPa, by Young's "
-                          "modulus")
-    if (falls := np.flatnonzero(np.diff(stress) < 0)).size:
-        law.notes.append(f"hardening: the flow stress falls behind the plastic strain {strain[falls[0]]:g}")
-    if strain[0] > 0:
-        strain, stress = np.append(0.0, strain), np.append(stress[0], stress)
-    return "table " + " ".join(f"{p:.6g}:{y:.6g}" for p, y in zip(strain, stress))
 
 
 def bilinear(deck: Deck, card: Card, units: Units, law: Law) -> int:
@@ -229,14 +152,6 @@ def power_law(deck: Deck, card: Card, units: Units, law: Law) -> int:
     second.leave(FAILURE, "EPSF")
     second.leave(RATES, "VP")
     return 0
-
-
-def first_strain(start: float, factor: float, exponent: float, young: float) -> float:
-    """Return the strain of first yield: a strain up to 0.02, a stress above, by default where the line of elasticity
-    meets the curve."""
-    if start > 0.02:
-        return float((start / factor) ** (1 / exponent))
-    return start or float((young / factor) ** (1 / (exponent - 1)) if exponent < 1 else 1e-3)
 
 
 def piecewise(deck: Deck, card: Card, units: Units, law: Law) -> int:
@@ -333,47 +248,42 @@ def barlat_lian(deck: Deck, card: Card, units: Units, law: Law) -> int:
         r = (found[0], found[1], found[2])
     else:
         r = r_values(second)
-    law.criterion = hill48(r)
-    if abs(abs(exponent) - 2) > 1e-6:
-        law.notes.append("yield: hill48 with the r-values, in place of Barlat and Lian (1989) of exponent "
-                         f"{abs(exponent):g}; nearer: dd3 identify blank --criterion yld91 --fix m={abs(exponent):g} "
-                         "--r "
-                         + " ".join(f"{angle}:{value:.4g}" for angle, value in zip((0, 45, 90), r)))
+    barlat89(law, abs(exponent), r)
     law.hardening = by_rule(deck, card, units, law)
     if exponent < 0:
         chaboche(card.row(2, CHABOCHE), units, law)
     return at
 
 
-def chaboche(row: Row, units: Units, law: Law) -> None:
-    """Take the back-stresses of *MAT_036 with M < 0, dX = C (a s/Y - X) dp. The curve of the card is that of tension:
-    the isotropic part is the curve less the sum of a (1 - exp(-C p))."""
-    terms = [(rate, limit * units.stress) for k in "1234"
-             if (limit := row.number(f"CRA{k}")) and (rate := row.number(f"CRC{k}"))]
-    if any(rate <= 0 or limit <= 0 for rate, limit in terms):
-        raise Problem(f"{row.place}: error: a back-stress with a rate or a limit <= 0")
-    law.backstresses = [f"lemaitre_chaboche CX={rate:.8g} Xsat={limit:.8g}" for rate, limit in terms]
-    if not terms:
-        return
-    points = table_of(law.hardening)
-    points = [(p, y - sum(limit * (1 - np.exp(-rate * p)) for rate, limit in terms)) for p, y in points]
-    if min(y for _, y in points) <= 0:
-        raise Problem(f"{row.place}: error: the back-stresses are larger than the flow stress")
-    law.hardening = "table " + " ".join(f"{p:.6g}:{y:.6g}" for p, y in points)
-    law.notes.append("hardening: the curve less the back-stresses in tension, as the sum of both is that of the deck")
+def barlat89(law: Law, exponent: float, r: tuple[float, float, float]) -> None:
+    """Take Hill's criterion in place of that of Barlat and Lian (1989), with a note unless they are the same."""
+    law.criterion = hill48(r)
+    if abs(exponent - 2) > 1e-6:
+        law.notes.append("yield: hill48 with the r-values, in place of Barlat and Lian (1989) of exponent "
+                         f"{exponent:g}; nearer: dd3 identify blank --criterion yld91 --fix m={exponent:g} --r "
+                         + " ".join(f"{angle}:{value:.4g}" for angle, value in zip((0, 45, 90), r)))
 
 
-def table_of(law: str) -> list[tuple[float, float]]:
-    """Return points of a hardening law, dense at small strains."""
-    name, *words = law.split()
-    if name == "table":
-        p, y = np.array([[float(value) for value in word.split(":")] for word in words]).T
-        strains = np.unique([*p, *(strain for strain in SOFT_STRAINS if strain <= p[-1])])
-        return list(zip(strains.tolist(), np.interp(strains, p, y).tolist()))
-    value = {key: float(number) for key, number in (word.split("=") for word in words)}
-    if name == "swift":
-        return [(p, value["K"] * (value["e0"] + p)**value["n"]) for p in SOFT_STRAINS]
-    return [(p, value["Y0"] + value["H"] * p) for p in SOFT_STRAINS]
+def two_surfaces(deck: Deck, card: Card, units: Units, law: Law) -> int:
+    """*MAT_125: Yoshida and Uemori's law, Hill's criterion with one r-value."""
+    row, second = row_of(card, 0), row_of(card, 1)
+    r = abs(row.number("R", 1.0)) or 1.0
+    law.criterion = hill48((r, r, r))
+    row.leave("the curve serves a calculation of errors only", "HLCID OPT")
+    yoshida_uemori(second, row_of(card, 2), units, law)
+    if second.number("SC2") not in (0.0, second.number("SC")):
+        raise Problem(f"{second.place}: error: SC2 = {second.number('SC2'):g}, another rate than SC; the rate C of "
+                      "yoshida_uemori is constant here: expected SC2 = 0 or SC")
+    return 0
+
+
+def two_surfaces_barlat(deck: Deck, card: Card, units: Units, law: Law) -> int:
+    """*MAT_226: Yoshida and Uemori's law with the criterion of Barlat and Lian (1989)."""
+    row, second = row_of(card, 0), row_of(card, 1)
+    barlat89(law, positive(abs(row.number("M")), "M", row.place), r_values(row))
+    second.leave("the curve serves a calculation of errors only", "HLCID")
+    yoshida_uemori(second, row_of(card, 2), units, law)
+    return 2
 
 
 def hill(deck: Deck, card: Card, units: Units, law: Law) -> int:

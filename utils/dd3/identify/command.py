@@ -31,9 +31,9 @@ from typing import Any
 
 from dd3.columns import every
 from dd3.command import new_parser
-from dd3.errors import Problem
+from dd3.errors import LOG, Problem
 from dd3.identify.criterion import CRITERIA, criterion
-from dd3.identify.hardening import BACKSTRESSES, LAWS, hardening
+from dd3.identify.hardening import BACKSTRESSES, LAWS, REVERSING, hardening
 from dd3.identify.least_squares import UNIT, NoStart, Points
 from dd3.identify.measurements import KEYS, TENSION, Datum, from_argument, read_data
 from dd3.plot.figures import save
@@ -112,7 +112,8 @@ def command_line() -> argparse.ArgumentParser:
         help="its strain ratio, transverse over along rolling (0.5)")
     add("--hardening", metavar="LAW",
         help=f"law to identify from --curve ({', '.join(LAWS)}), or a law with all its values")
-    add("--curve", metavar="FILE", help="tension curve along rolling; with --backstress continuing in compression")
+    add("--curve", metavar="FILE",
+        help="tension curve along rolling; with --backstress or yoshida_uemori it goes on in compression")
     add_curve(parser)
     return parser
 
@@ -165,7 +166,8 @@ def draw(options: argparse.Namespace, text: str, data: Sequence[Datum], curve: A
     if legend := figure.axes[-1].get_legend():
         legend.remove()  # each panel has its own
     axes = figure.axes
-    if options.backstress:
+    reverses = bool(options.backstress) or options.hardening in REVERSING
+    if reverses:
         for line in list(axes[0].lines):
             line.remove()
         axes[0].set_title("Curve")
@@ -173,7 +175,7 @@ def draw(options: argparse.Namespace, text: str, data: Sequence[Datum], curve: A
                              "label": "measured"}
     if curve is not None:
         axes[0].plot(curve[0], curve[1], **{**style, "marker": ".", "zorder": 1})
-        if options.backstress:
+        if reverses:
             axes[0].plot(curve[0], curve[2], color="C1", label="identified")
     for part, quantity in ((axes[1], "r"), (axes[2], "stress")):
         chosen = [d for d in data if d.kind == "tension" and d.quantity == quantity]
@@ -226,7 +228,7 @@ def identify(options: argparse.Namespace, yields: str = "von_mises") -> None:
         path.write_text(text, encoding="utf-8")
     except OSError as error:
         raise Problem(f"{path}: error: {error.strerror}") from None
-    print(f"{text}\n{points.runs} runs of the program; written to {path}")
+    LOG.info(f"{text}\n{points.runs} runs of the program; written to {path}")
     if options.plot:
         draw(options, text, data, curve)
 

@@ -11,12 +11,13 @@ from dd3.identify.least_squares import Fit, LoadPath, Points, law_text, report, 
 from dd3.identify.measurements import TENSION, read_curve
 
 MISSED_CURVE = 0.01  # root mean square of the difference, over the largest stress, that is noted
-LAWS = ("linear", "swift", "voce", "swift_voce", "ludwik", "hockett_sherby", "table")
+LAWS = ("linear", "swift", "voce", "swift_voce", "ludwik", "hockett_sherby", "table", "yoshida_uemori")
+REVERSING = ("yoshida_uemori",)  # laws with a back-stress of their own
 BACKSTRESSES = {"prager": ("k",), "lemaitre_chaboche": ("CX", "Xsat")}
 
 
 def law_start(name: str, plastic: np.ndarray, stress: np.ndarray) -> dict[Any, float]:
-    """Return the starting values of a hardening law's parameters."""
+    """Return the starting values of a hardening law's parameters; B of yoshida_uemori less Y."""
     first, last, end = stress[0], stress.max(), max(plastic.max(), 1e-3)
     rise = max(last - first, 0.05 * last)
     swift = {"K": last / (0.01 + end) ** 0.2, "e0": 0.01, "n": 0.2}
@@ -25,7 +26,9 @@ def law_start(name: str, plastic: np.ndarray, stress: np.ndarray) -> dict[Any, f
         "linear": {"Y0": first, "H": rise / end}, "swift": swift, "voce": voce,
         "ludwik": {"Y0": 0.9 * first, "K": rise / end**0.5, "n": 0.5},
         "hockett_sherby": {"Y0": first, "Ysat": first + 1.2 * rise, "N": 2 / end, "q": 0.8},
-        "swift_voce": {"alpha": 0.5, **swift, **voce}, "table": table_start(plastic, stress)}
+        "swift_voce": {"alpha": 0.5, **swift, **voce}, "table": table_start(plastic, stress),
+        "yoshida_uemori": {"Y": 0.8 * first, "B": 0.4 * first, "C": 200.0, "m": 1 / end, "b_sat": 0.1 * last,
+                           "Rsat": 0.7 * rise, "h": 0.5}}
     return laws[name]
 
 
@@ -45,6 +48,8 @@ def hardening_lines(name: str, values: dict[Any, float], digits: int = 10) -> li
     if name == "table":
         knots = " ".join(f"{knot:g}:{value:.{digits}g}" for knot, value in zip(own, np.cumsum(list(own.values()))))
         lines = [f"hardening = table {knots}"]
+    elif name == "yoshida_uemori":
+        lines = ["hardening = " + law_text(name, own | {"B": own["Y"] + own["B"]}, digits)]
     else:
         lines = ["hardening = " + law_text(name, own, digits)]
     for law in dict.fromkeys(key[:2] for key in values if isinstance(key, tuple)):
@@ -55,7 +60,8 @@ def hardening_lines(name: str, values: dict[Any, float], digits: int = 10) -> li
 
 def measured_curve(options: argparse.Namespace) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return at most 60 strains and stresses beyond the first elastic range, and the turning points."""
-    strain, stress = read_curve(options.curve, bool(options.backstress))
+    reverses = bool(options.backstress) or options.hardening in REVERSING
+    strain, stress = read_curve(options.curve, reverses)
     if options.plastic_strain:
         strain = strain + stress / options.young
     plastic = strain - stress / options.young
@@ -67,7 +73,7 @@ def measured_curve(options: argparse.Namespace) -> tuple[np.ndarray, np.ndarray,
         raise Problem(f"{options.curve}: error: {len(strain)} rows beyond the elastic range of --young "
                       f"{options.young:g}\n  expected: four or more")
     turns = np.flatnonzero(np.diff(np.sign(np.diff(strain)))) + 1
-    if options.backstress and not len(turns):
+    if reverses and not len(turns):
         raise Problem(f"{options.curve}: error: the strain increases throughout: no back-stress can be identified\n"
                       "  expected: a curve with a reversal, such as tension and then compression")
     if len(strain) > 60:
@@ -88,7 +94,7 @@ def hardening_start(options: argparse.Namespace, strain: np.ndarray, stress: np.
     for number, law in enumerate(options.backstress):
         first = {"k": most, "CX": 15 * 8**number, "Xsat": 0.15 * most}
         start.update({(law, number, name): first[name] for name in BACKSTRESSES[law]})
-    highest = {"n": 1, "q": 1, "alpha": 1}
+    highest = {"n": 1, "q": 1, "alpha": 1, "h": 1}
     return {name: (np.log(value), np.log(value / 300), np.log(highest.get(name, value * 300)))
             for name, value in start.items()}
 
@@ -106,7 +112,7 @@ def hardening(options: argparse.Namespace, points: Points, yields: str
     strain, stress, turns = measured_curve(options)
     sought = hardening_start(options, strain, stress, turns)
     counts = np.ones(len(strain), int)
-    if options.backstress:  # the law of the back-stress is integrated step by step
+    if options.backstress or options.hardening in REVERSING:  # the law of the back-stress is integrated step by step
         counts = np.maximum(1, np.ceil(np.abs(np.diff(strain, prepend=0)) / 0.002)).astype(int)
     path: LoadPath = (TENSION, 0, [([value, 0, 0, 0, 0, 0], count) for value, count in zip(strain, counts)])
     ends = np.cumsum(counts)

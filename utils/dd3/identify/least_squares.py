@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import differential_evolution, least_squares
 
-from dd3.errors import Problem
+from dd3.errors import LOG, Problem
 from dd3.programs import POINTS, run_points
 from dd3.progress import counter
 
@@ -205,5 +205,5 @@ def rounded(trial: Callable[[int], Any], compute: Callable[[list[Any]], list[Any
 
 
 def report(name: str, costs: list[float]) -> None:
-    """Print the result of each start."""
-    print(f"{name}: root of the sum of squares from each start: " + " ".join(f"{cost:.3g}" for cost in costs))
+    """Tell the result of each start."""
+    LOG.info(f"{name}: root of the sum of squares from each start: " + " ".join(f"{cost:.3g}" for cost in costs))

@@ -10,7 +10,7 @@ import numpy as np
 
 from dd3.account import Account
 from dd3.columns import NUMBER, STRAIN, STRESS, Column, Line, Row, Word, every, lines_of, read_columns
-from dd3.errors import Problem
+from dd3.errors import LOG, Problem
 
 TENSION, EQUIBIAXIAL = "e11 s22 s33 s12 s23 s13", "s11 s22 e33 s12 s23 s13"
 PLANE = "e11 e22 s33 s12 s23 s13"
@@ -139,7 +139,7 @@ def read_curve(path: str, reversed_too: bool) -> np.ndarray:
                       "  expected: strain and stress in four rows or more")
     check_curve(rows, reversed_too)
     for item in account.left_out():
-        print(f"left out: {item}")
+        LOG.info(f"left out: {item}")
     return np.array([row.values for row in rows]).T
 
 

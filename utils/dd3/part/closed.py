@@ -9,13 +9,14 @@ along parallel lines is replaced by its profile, extruded beyond its ends (see `
 """
 import tempfile
 from collections import Counter
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
 
+from dd3.part.bends import ALONG, find_bends
 from dd3.part.filling import SAME, Side
 from dd3.part.openings import Opening, curves_of, middle, openings_of
 from dd3.part.profile import Profile, edges_of, extrude, faces_of, profile_of
@@ -77,19 +78,22 @@ def closed_part(gmsh: Any, reading: Reading, faces: list[int]) -> Closed | None:
     with silence():
         whole = side_of(gmsh, shape, written_by(gmsh), set(shape.tags), outer)
         text, _, _ = whole.result({})  # without other parts of the file
-        side = closed_solid(gmsh, reading, text, whole, both)
-        if side is None:
-            side = side_of(gmsh, shape, text, set(faces), outer)
-            left = side.filled(openings)
+        solid, left_of_solid = closed_solid(gmsh, reading, text, whole, both)
+        left = [one for one in openings if any(set(one.edges) == set(other.edges) for other in left_of_solid)]
+        side = solid or whole
+        if solid is None or left:
+            alone = side_of(gmsh, shape, text, set(faces), outer)
+            left_alone = alone.filled(openings)
+            if solid is None or len(left_alone) < len(left):
+                side, left = alone, left_alone
     large = [opening for opening in left if opening.size > LARGE * shape.size]
     for opening in left:
         if any(opening is one for one in large):
             continue
-        reading.faults.append(Fault(f"{opening.said} is not filled, as faces end there that do not go on behind it: "
-                                    "close it in the CAD program, or choose faces by --faces", opening.faces,
+        reading.faults.append(Fault(f"{opening.said} is not filled, {why(shape, faces, opening)}", opening.faces,
                                     opening.edges))
     rims = len(side.loops(set(faces)))
-    if len(left) == len(large) and rims != 1 + len(large):
+    if len(left) == len(large) and rims != 1 + sum(not opening.notch for opening in large):
         reading.faults.append(Fault(f"{rims} rims are left after {len(openings)} openings were filled: close them in "
                                     "the CAD program, or choose faces by --faces"))
     found = [one.words for one in openings if not any(one is other for other in left)]
@@ -103,18 +107,34 @@ def closed_part(gmsh: Any, reading: Reading, faces: list[int]) -> Closed | None:
                   curves, notes)
 
 
+def why(shape: Shape, faces: list[int], opening: Opening) -> str:
+    """Return why an opening of a side is not filled, and what to do."""
+    beside = [bend for bend in find_bends(shape, faces) if set(bend.faces) & set(opening.faces)]
+    if any(abs(one.axis @ beside[0].axis) < ALONG for one in beside):
+        return ("as walls that are bent along lines in different directions end there, with an open corner: the part "
+                "is folded from a blank that is cut there before, not drawn. Close the corner in the CAD program to "
+                "draw and trim it, or bend the walls one after the other on a press brake")
+    if beside and opening.notch:
+        return ("as the sheet goes on beside a bend there: it has to be cut before it is bent, a cut after the stroke "
+                "cannot make it. End the sheet at the bend in the CAD program, or bend the cut blank on a press brake")
+    return "as faces end there that do not go on behind it: close it in the CAD program, or choose faces by --faces"
+
+
 def extruded(gmsh: Any, reading: Reading, profile: Profile, faces: list[int], openings: list[Opening],
              curves: list[np.ndarray]) -> Closed:
     """Return the extruded profile of a part, longer than the part: the blank covers it and is cut at its ends."""
     beyond = BEYOND_ENDS * (reading.sheet.thickness or 0.0)
-    profile = replace(profile, low=profile.low - beyond, high=profile.high + beyond)
+    floor = {tag for tag, role in reading.roles.items() if role.name == "floor"}
+    own, profile = profile, profile.continued(beyond, floor)
+    across = any((one.points != other.points).any() for one, other in zip(own.chains, profile.chains))
     with silence():
         extrude(gmsh, profile)
         text = written_by(gmsh)
         read_text(gmsh, text)
     numbers, edges = faces_of(gmsh, profile), edges_of(gmsh, profile, reading.shape)
     notes = [*reading.left_out, *reading.notes,
-             f"profile of the bent part, continued by {beyond:.3g} mm beyond its ends",
+             f"profile of the bent part, continued by {beyond:.3g} mm beyond its ends"
+             + (", and beyond the open end of its floor" if across else ""),
              *(["filled: " + summary([one.words for one in openings])] if openings else [])]
     return Closed(text, numbers, [tag for tag, number in numbers.items() if number in set(faces)], edges, openings,
                   curves, notes)
@@ -140,37 +160,44 @@ def off_faces(gmsh: Any, text: str, edges: list[int]) -> float:
 
 
 def closed_solid(gmsh: Any, reading: Reading, text: str, whole: Side, both: list[tuple[list[Opening], set[int]]]
-                ) -> Side | None:
-    """Return the faces of the solid of a sheet whose openings were filled on both sides, None if that cannot be:
-    `whole` are its faces, which are changed, `text` is the BREP file of them as they were, and `both` has the openings
-    of each side and the faces at its outer rim."""
+                ) -> tuple[Side | None, list[Opening]]:
+    """Return the faces of the solid of a sheet whose openings were filled on both sides, None if that cannot be, and
+    those that are left: `whole` are its faces, which are changed, `text` is the BREP file of them as they were, and
+    `both` has the openings of each side and the faces at its outer rim."""
     shape, sheet = reading.shape, reading.sheet
     if not reading.solid or not all(sheet.sides):
-        return None
+        return None, []
     openings = [opening for one, _ in both for opening in one]
     rims = set(sheet.rims)
     walls = [{tag for edge in opening.edges for tag in shape.edges[edge].faces} & rims for opening in openings]
     fixed = set().union(*(outer for _, outer in both), rims - set().union(*walls))
     hard = {i for i, opening in enumerate(openings) if opening.notch}
+    side = whole
     for _ in range(2):
-        side = whole
         side.fixed = fixed
-        if hard:
-            if any(openings[i].formed or openings[i].size > LARGE * shape.size for i in hard):
-                return None
-            solid, vertices = without(gmsh, shape, text, set().union(*(walls[i] for i in hard)))
-            if not solid:
-                return None
-            side = side_of(gmsh, shape, solid, set(shape.tags), fixed, (sheet.sides, vertices))
-            if any(walls[i] & set(side.numbers) for i in hard):
-                return None
         easy = [i for i in range(len(openings)) if i not in hard]
         side.remove(set().union(*(walls[i] for i in easy)))
         left = side.filled([openings[i] for i in easy])
         if not left:
-            return None if side.loops(set(shape.tags)) else side
+            break
         hard |= {i for i in easy if any(openings[i] is one for one in left)}
-    return None
+        side = side_of(gmsh, shape, text, set(shape.tags), fixed)
+    if left:
+        return None, []
+    # OpenCASCADE is the faster the fewer openings the solid has. What it does not take out is left.
+    tried = [i for i in hard if not openings[i].formed and openings[i].size <= LARGE * shape.size]
+    taken = set[int]()
+    at_once = [set().union(*(walls[i] for i in tried))] if tried else []
+    each = [set(one) for one in dict.fromkeys(tuple(sorted(walls[i])) for i in tried)]
+    for some in (at_once, each if len(each) > 1 else []):
+        for inside in [one for one in some if not one <= taken]:
+            new, known = without(gmsh, side, inside)
+            if new:
+                other = side_of(gmsh, shape, new, set(shape.tags), fixed, (sheet.sides, known))
+                if not inside & set(other.numbers) and not other.loops(set(shape.tags)):
+                    side, taken = other, taken | inside
+    left = [openings[i] for i in hard if not walls[i] <= taken]
+    return (None, []) if side.loops(set(shape.tags)) else (side, left)
 
 
 def read_text(gmsh: Any, text: str) -> None:
@@ -191,36 +218,46 @@ def written_by(gmsh: Any) -> str:
         return path.read_text(encoding="utf-8")
 
 
-Changed = tuple[tuple[list[int], list[int]], dict[int, np.ndarray]]
+@dataclass
+class Known:
+    """What is known of a face: its area, mm2, its centroid, and its vertices (n, 3)."""
+
+    area: float
+    centre: np.ndarray
+    vertices: np.ndarray
 
 
-def side_of(gmsh: Any, shape: Shape, text: str, faces: set[int], fixed: set[int], changed: Changed | None = None
-           ) -> Side:
-    """Return faces of a part in a BREP file, which the session reads. With both sides of the part and the vertices of
-    its faces as it was read, faces that were changed since get numbers by these."""
+def side_of(gmsh: Any, shape: Shape, text: str, faces: set[int], fixed: set[int],
+            changed: tuple[tuple[list[int], list[int]], dict[int, Known]] | None = None) -> Side:
+    """Return faces of a part in a BREP file, which the session reads. With both sides of the part and its faces before
+    a change, those that were changed get numbers by their vertices."""
     read_text(gmsh, text)
     topology = Topology.of(text)
     tags = [tag for _, tag in gmsh.model.getEntities(2)]
-    number = numbers_of(gmsh, tags, shape)
+    known = changed[1] if changed else {tag: Known(shape.areas[tag], shape.centres[tag], np.zeros((0, 3)))
+                                        for tag in shape.tags}
+    number = numbers_of(gmsh, tags, known, SAME * shape.size)
     if changed:
+        vertices = {tag: face.vertices for tag, face in known.items()}
         for tag in [tag for tag in tags if tag not in number]:
-            number[tag] = number_by_vertices(corners(gmsh, tag), *changed, set(number.values()), SAME * shape.size)
+            number[tag] = number_by_vertices(corners(gmsh, tag), changed[0], vertices, set(number.values()),
+                                             SAME * shape.size)
     edges = dict(zip((part.record for part in topology.found("Ed")), (tag for _, tag in gmsh.model.getEntities(1))))
     chosen = [(part, number[tag]) for part, tag in zip(topology.found("Fa"), tags) if number.get(tag) in faces]
     return Side(gmsh, topology, [part for part, _ in chosen], [one for _, one in chosen], fixed, edges,
                 SAME * shape.size)
 
 
-def numbers_of(gmsh: Any, tags: list[int], shape: Shape) -> dict[int, int]:
-    """Return the numbers in the part of the faces that are as they were, by area and centre."""
-    old = shape.tags
-    away, at = cKDTree([shape.centres[tag] for tag in old]).query(
+def numbers_of(gmsh: Any, tags: list[int], known: dict[int, Known], near: float) -> dict[int, int]:
+    """Return the numbers of the faces that are as they were, by area and centre."""
+    old = list(known)
+    away, at = cKDTree([known[tag].centre for tag in old]).query(
         [gmsh.model.occ.getCenterOfMass(2, tag) for tag in tags], k=min(4, len(old)))
     found = {}
     for tag, distances, places in zip(tags, np.reshape(away, (len(tags), -1)), np.reshape(at, (len(tags), -1))):
         area = gmsh.model.occ.getMass(2, tag)
         same = [old[k] for k, distance in zip(places, distances)
-                if distance <= SAME * shape.size and abs(shape.areas[old[k]] - area) <= EQUAL * area]
+                if distance <= near and abs(known[old[k]].area - area) <= EQUAL * area]
         if same:
             found[tag] = same[0]
     return found
@@ -246,12 +283,13 @@ def number_by_vertices(points: np.ndarray, sides: tuple[list[int], list[int]], v
     return max((tag for tag in side if tag not in used), key=lambda tag: common([tag]).sum(), default=0)
 
 
-def without(gmsh: Any, shape: Shape, text: str, walls: set[int]) -> tuple[str, dict[int, np.ndarray]]:
-    """Return the text of a part without the openings that have walls, an empty one if OpenCASCADE does not take them
-    out; and the vertices of the faces of the part."""
+def without(gmsh: Any, side: Side, walls: set[int]) -> tuple[str, dict[int, Known]]:
+    """Return the text of a solid without the openings that have walls, an empty one if OpenCASCADE does not take them
+    out; and what is known of its faces before."""
+    text, number, _ = side.result({})
     read_text(gmsh, text)
-    number = numbers_of(gmsh, [tag for _, tag in gmsh.model.getEntities(2)], shape)
-    vertices = {one: corners(gmsh, tag) for tag, one in number.items()}
+    known = {one: Known(gmsh.model.occ.getMass(2, tag), np.array(gmsh.model.occ.getCenterOfMass(2, tag)),
+                        corners(gmsh, tag)) for tag, one in number.items()}
     chosen = [tag for tag, one in number.items() if one in walls]
     low, high = box_of_edges(gmsh)
     solids = {int(solid) for tag in chosen for solid in gmsh.model.getAdjacencies(2, tag)[0]}
@@ -260,10 +298,10 @@ def without(gmsh: Any, shape: Shape, text: str, walls: set[int]) -> tuple[str, d
             gmsh.model.occ.defeature(sorted(solids), chosen)
             gmsh.model.occ.synchronize()
     except Exception:  # Gmsh raises nothing more specific
-        return "", vertices
+        return "", known
     lower, higher = box_of_edges(gmsh)
     beyond = max((low - lower).max(), (higher - high).max())
-    return written_by(gmsh) if beyond <= BEYOND * shape.size else "", vertices
+    return written_by(gmsh) if beyond <= BEYOND * side.near / SAME else "", known
 
 
 def box_of_edges(gmsh: Any) -> tuple[np.ndarray, np.ndarray]:

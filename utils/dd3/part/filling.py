@@ -19,6 +19,8 @@ from dd3.tools.brep import Part, Topology
 SAME, ON_CURVE = 1e-6, 1e-5
 # Points of a curve at which the other piece is sought, and places at which it is compared.
 SOUGHT, COMPARED = 400, np.linspace(0, 1, 9)
+# Steps to the point at which two curves meet.
+MEETING = 20
 
 
 @dataclass
@@ -135,11 +137,13 @@ class Side:
         left = {edge for edge in free if owners[edge][0] not in island
                 and not any(edge in {one.record for one in records[wire].parts} for i, wire in drop)}
         bare = any(len(records[self.faces[i].record].parts) == sum(one == i for one, _ in drop) for i, _ in drop)
-        pairs = self.pairs(owners, left)
-        if bare or pairs is None or (left and not pairs):
+        pairs, alone = self.pairs(owners, left)
+        if bare or (left and not pairs and not alone):
             return False
-        merged = [new for pair in pairs if (new := self.merged(*pair)) is not None]
-        if len(merged) < len(pairs):
+        first = self.closed(owners, pairs, alone) if alone else {
+            pair[0]: new for pair in pairs if (new := self.merged(*pair)) is not None}
+        pairs = [] if alone else pairs
+        if not first if alone else len(first) < len(pairs):
             return False
         for i, wire in drop:
             face = records[self.faces[i].record]
@@ -149,8 +153,7 @@ class Side:
                 owners.pop(edge)
             return True
         self.owner_of = None
-        first = {pair[0]: new for pair, new in zip(pairs, merged)}
-        self.became |= first | {pair[2]: new for pair, new in zip(pairs, merged)}
+        self.became |= first | {pair[2]: first[pair[0]] for pair in pairs}
         gone = left | {pair[2] for pair in pairs}
         for i in {i for edge in {*first, *gone} for i in owners[edge]}:
             for one in records[self.faces[i].record].parts:
@@ -186,9 +189,10 @@ class Side:
                 waiting += [j for edge in self.edges_of(self.faces[i]) for j in owners[edge]]
         return found
 
-    def pairs(self, owners: dict[int, list[int]], free: set[int]) -> list[tuple[int, int, int, int]] | None:
+    def pairs(self, owners: dict[int, list[int]], free: set[int]
+             ) -> tuple[list[tuple[int, int, int, int]], list[tuple[int, int]]]:
         """Return the edges that free ones interrupt, in pairs that lie between the same faces: edge, its vertex at the
-        opening, the same of the other; None if there is an edge without another one."""
+        opening, the same of the other; and edges without another one, with their vertices at the opening."""
         ends: defaultdict[tuple[int, ...], list[tuple[int, int]]] = defaultdict(list)
         at_opening = {vertex for edge in free for vertex in self.topology.ends(edge)}
         beside = {i for edge in free for i in owners[edge]}
@@ -196,17 +200,79 @@ class Side:
             for vertex in set(self.topology.ends(edge)) & at_opening:
                 ends[tuple(sorted(owners[edge]))].append((edge, vertex))
         found: list[tuple[int, int, int, int]] = []
+        alone: list[tuple[int, int]] = []
         for same in ends.values():
             while same:
                 here = same.pop()
                 fits = [pair for one in same if one[0] != here[0] for pair in ((*here, *one), (*one, *here))
                         if self.merged(*pair)]
                 if not fits:
-                    return None
+                    alone.append(here)
+                    continue
                 found.append(min(fits, key=lambda pair: np.linalg.norm(self.end(*pair[:2]) - self.end(*pair[2:]))))
                 same = [one for one in same if one not in (found[-1][:2], found[-1][2:])]
         used = [edge for pair in found for edge in pair[::2]]
-        return found if len(used) == len(set(used)) else None
+        return (found, alone) if len(used) == len(set(used)) else ([], [])
+
+    def closed(self, owners: dict[int, list[int]], pairs: list[tuple[int, int, int, int]],
+               alone: list[tuple[int, int]]) -> dict[int, int]:
+        """Return new edges by the old ones where an opening interrupts a rim at the seam of a face, or takes the vertex
+        of a round one: the seam goes on to the curve of the rim, whose ends meet there, or its own ends meet; none if
+        that is not how the edges lie."""
+        seams = [one for one in alone if len(owners[one[0]]) == 2 and len(set(owners[one[0]])) == 1]
+        rims = [one for one in alone if one not in seams] + [one for pair in pairs for one in (pair[:2], pair[2:])]
+        places = {(wire, own) for edge, _ in (*seams, *rims) for _, wire, own in self.places(edge)}
+        if len(seams) > 1 or len(rims) != 2 or (pairs and len(alone) > 1) or self.ending or places != {(0, 0)}:
+            return {}
+        one, other = rims
+        round_one = one[0] == other[0]
+        if self.gmsh.model.getType(1, self.tags[one[0]]) not in ("Circle", "Ellipse") if round_one else not seams:
+            return {}
+        if not seams:
+            low, _ = self.topology.bounds(one[0])
+            return {one[0]: self.between(one[0], low, low + 2 * np.pi, [self.topology.ends(one[0])[0]] * 2)}
+        apart = np.linalg.norm(self.end(*one) - self.end(*other))
+        length = 2 * max(apart, np.linalg.norm(self.end(*one) - self.end(*seams[0])))
+        reach = {edge: self.beyond_end(edge, vertex, float(length)) for edge, vertex in (*seams, one)}
+        place = self.crossing(seams[0][0], one[0], reach)
+        if place is None:
+            return {}
+        vertex = self.topology.moved(seams[0][1], self.faces[owners[seams[0][0]][0]].place, place)
+        ends = {edge: list(self.topology.ends(edge)) for edge, _ in (*seams, *rims)}
+        bounds = {edge: list[float](self.topology.bounds(edge)) for edge in ends}
+        for edge, old in (*seams, *rims):
+            last = int(ends[edge][1] == old)
+            reached = 2 * max(float(apart), float(np.linalg.norm(self.end(edge, old) - place)))
+            start, stop = self.beyond_end(edge, old, reached)
+            bounds[edge][last] = float(self.nearest(edge, place[None], start, stop)[0][0])
+            ends[edge][last] = vertex
+        return {edge: self.between(edge, bounds[edge][0], bounds[edge][1], ends[edge]) for edge in ends}
+
+    def beyond_end(self, edge: int, vertex: int, length: float) -> tuple[float, float]:
+        """Return the parameters of an end of an edge, and of its curve about a length beyond."""
+        low, high = self.topology.bounds(edge)
+        own = np.linalg.norm(np.diff(self.points(edge, low, high, COMPARED), axis=0), axis=1).sum()
+        step = length / own * (high - low)
+        return (high, high + step) if vertex == self.topology.ends(edge)[1] else (low, low - step)
+
+    def crossing(self, edge: int, other: int, reach: dict[int, tuple[float, float]]) -> np.ndarray | None:
+        """Return the point at which the curves of two edges meet between parameters (3,), None without one."""
+        points = self.points(other, *reach[other], np.linspace(0, 1, SOUGHT + 1))
+        place = points[[int(self.nearest(edge, points, *reach[edge])[1].argmin())]]
+        for _ in range(MEETING):
+            for curve in (edge, other):
+                found, away = self.nearest(curve, place, *reach[curve])
+                place = np.reshape(self.gmsh.model.getValue(1, self.tags[curve], found), (-1, 3))
+        return place[0] if away[0] <= self.near else None
+
+    def between(self, edge: int, low: float, high: float, vertices: list[int]) -> int:
+        """Return a new edge on the curve of another one, between parameters and vertices."""
+        new = edge
+        for sign, vertex in zip("+-", vertices):
+            place = next(part.place for part in self.topology.records[edge].parts if part.forward == sign)
+            new = self.topology.stretched(new, low, high, Part(vertex, sign, place))
+        self.tags[new] = self.tags[edge]
+        return new
 
     def merged(self, edge: int, vertex: int, other: int, vertex_of_other: int) -> int | None:
         """Return the edge that continues one over the opening at its vertex up to the far end of another piece of the

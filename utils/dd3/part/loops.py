@@ -28,6 +28,7 @@ class Loop:
     faces: list[int]
     length: float
     area: np.ndarray
+    hole: "Hole | None" = None  # what it is as an inner loop, once that was asked
 
 
 @dataclass
@@ -57,6 +58,14 @@ class Notch:
 
 def find_loops(shape: Shape, faces: list[int]) -> list[Loop]:
     """Return the rims of a side, that of the largest area, the outer one, first."""
+    key = tuple(sorted(faces))
+    if key not in shape.rims:
+        shape.rims[key] = loops_of(shape, faces)
+    return shape.rims[key]
+
+
+def loops_of(shape: Shape, faces: list[int]) -> list[Loop]:
+    """Find the rims of a side."""
     own = shape.of(faces)
     start, end = shape.triangles[own].ravel(), np.roll(shape.triangles[own], -1, axis=1).ravel()
     owner, piece = np.repeat(own, 3), shape.piece_of[own].ravel()
@@ -86,6 +95,13 @@ def find_loops(shape: Shape, faces: list[int]) -> list[Loop]:
 
 def hole_of(shape: Shape, loop: Loop) -> Hole:
     """Return what an inner loop is."""
+    if loop.hole is None:
+        loop.hole = named_hole(shape, loop)
+    return loop.hole
+
+
+def named_hole(shape: Shape, loop: Loop) -> Hole:
+    """Find what an inner loop is."""
     points = shape.nodes[loop.nodes]
     normal = unit(loop.area)
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
@@ -95,7 +111,7 @@ def hole_of(shape: Shape, loop: Loop) -> Hole:
     axes = np.linalg.eigh(inplane.T @ inplane)[1].T[1:]
     size = sorted((float(np.ptp(inplane @ axis)) for axis in axes), reverse=True)
     beside = shape.of(loop.faces)
-    near = beside[np.isin(shape.triangles[beside], loop.nodes).any(axis=1)]
+    near = beside[shape.marked(loop.nodes)[shape.triangles[beside]].any(axis=1)]
     level = np.abs(shape.normal[near] @ normal)
     if np.average(level, weights=shape.area[near]) < np.sin(np.radians(LANCED)):
         outwards = np.sign(((shape.place[near] - middle) * shape.normal[near]).sum(axis=1))

@@ -74,6 +74,23 @@ class Profile:
     low: float
     high: float
 
+    def continued(self, beyond: float, faces: set[int]) -> "Profile":
+        """Return the profile longer by a length, mm: along the lines at both ends, and across them at ends that are
+        lines with one of the faces given."""
+        ends = [self.chains[0].points[[0, -1]], self.chains[1].points[[0, -1]]]
+        turned = np.linalg.norm(ends[0] - ends[1]) > np.linalg.norm(ends[0] - ends[1][::-1])
+        points = [chain.points.copy() for chain in self.chains]
+        for end in (0, -1):
+            both = [(0, end), (1, -1 - end if turned else end)]
+            pieces = [self.chains[side].pieces[at] for side, at in both]
+            if any(piece.radius for piece in pieces) or not faces & {tag for piece in pieces for tag in piece.faces}:
+                continue
+            for side, at in both:
+                inner = points[side][1 if at == 0 else -2]
+                points[side][at] += beyond * unit(points[side][at] - inner)
+        chains = [Chain(chain.pieces, own) for chain, own in zip(self.chains, points)]
+        return Profile(chains, self.axes, self.low - beyond, self.high + beyond)
+
     def place(self, point: np.ndarray, along: float) -> np.ndarray:
         """Return a point of the profile in the coordinates of the part (3,)."""
         return np.asarray(np.array([*point, along]) @ self.axes)

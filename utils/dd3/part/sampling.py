@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Triangles of the faces in a session of Gmsh, with the normals and curvatures of the CAD."""
+import re
 from collections import defaultdict
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,8 @@ from dd3.tools.parameters import parameters_of
 
 # Largest and least side of a triangle over the diagonal of the part's box, and triangles of a turn of 360 degrees.
 LONGEST, SHORTEST, TURN = 1 / 25, 1 / 250, 18
-TIME = 60.0  # processor time for the triangles, s
+# Processor time for the triangles, and for each face, s.
+TIME, TIME_PER_FACE = 6.0, 0.006
 OPTIONS = {"Mesh.RecombineAll": 0, "Mesh.SubdivisionAlgorithm": 0, "Mesh.Algorithm": 5, "Mesh.ElementOrder": 1,
            "Mesh.MeshSizeFromCurvature": TURN, "Mesh.MeshSizeExtendFromBoundary": 0, "Mesh.MeshSizeFromPoints": 0}
 # Deviation of an edge from its chord, over its length, up to which it is straight.
@@ -47,13 +49,22 @@ def sampled(gmsh: Any, path: Path, tags: list[int]) -> Shape:
 def triangulate(gmsh: Any, path: Path, tags: list[int]) -> list[int]:
     """Make the triangles; return the faces of which Gmsh makes none."""
     set_sizes(gmsh, tags)
+    seconds = max(TIME, TIME_PER_FACE * len(tags))
+    gmsh.logger.start()
     try:
-        with limited(TIME, f"{path}: the faces are not read in {TIME:.0f} s of processor time: take the part that is "
-                     "to be formed by --part"):
+        with limited(seconds, lambda: f"{path}: {len(tags)} faces are not read in {seconds:.0f} s of processor time, "
+                     f"{at_face(gmsh)}: take the part that is to be formed by --part, or its faces by --faces"):
             gmsh.model.mesh.generate(2)
     except Exception:  # Gmsh raises nothing more specific
         pass
+    gmsh.logger.stop()
     return [tag for tag in tags if not len(gmsh.model.mesh.getElements(2, tag)[0])]
+
+
+def at_face(gmsh: Any) -> str:
+    """Return in words at which face Gmsh is, by its log."""
+    found = [match[1] for line in gmsh.logger.get() if (match := re.search(r"Meshing surface (\d+)", line))]
+    return f"the last one that was begun is face {found[-1]}" if found else "not even their edges"
 
 
 def set_sizes(gmsh: Any, tags: list[int]) -> None:

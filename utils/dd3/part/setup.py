@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What `dd3 tool` takes from the reading of a part: thickness, press direction, the faces of one side; or why it makes
 no tools."""
-import argparse
 from dataclasses import replace
 from typing import Any
 
@@ -19,6 +18,7 @@ from dd3.part.table import kind_of
 from dd3.progress import Progress
 from dd3.tools.faces import numbers_of, side_of_sheet
 from dd3.tools.moved import rotation
+from dd3.tools.settings import OPEN, ToolSettings
 
 UP = np.array([0.0, 0.0, 1.0])
 # Angle up to which a direction is z, degrees.
@@ -31,7 +31,7 @@ PARALLEL = 0.999
 REVERSED = 135.0
 
 
-def read_for_tools(options: argparse.Namespace) -> Reading:
+def read_for_tools(options: ToolSettings) -> Reading:
     """Read the part of the options, and set `thickness`, `rotate` and `taken`, the faces that one tool touches, where
     they are not given, `closed`, the part without its openings if it has any, `curves` of its rims, `roles` of the
     faces, `angles` of sharp edges, `holes`, and `advice` for where no die can be made around it. The punch comes along
@@ -58,7 +58,7 @@ def read_for_tools(options: argparse.Namespace) -> Reading:
     return reading
 
 
-def settle(reading: Reading, options: argparse.Namespace, up: np.ndarray, given: bool) -> None:
+def settle(reading: Reading, options: ToolSettings, up: np.ndarray, given: bool) -> None:
     """Set what is taken from the reading; `given`: the direction `up` is the user's."""
     if reading.direction and not given:
         reading.direction.name = "axis z"
@@ -68,7 +68,7 @@ def settle(reading: Reading, options: argparse.Namespace, up: np.ndarray, given:
         up = take(reading).vector
     if options.toward is not None or not given:
         options.rotate = turn_to_z(up)
-    options.thickness = options.thickness or rounded(reading.sheet.thickness)
+    options.thickness = options.thickness or rounded(reading.sheet.thickness) or OPEN
     if not options.thickness and not reading.faults:
         reading.faults.append(Fault(f"{kind_of(reading)}: give the thickness of the sheet by --thickness"))
     options.advice = advice(reading, up)
@@ -76,7 +76,7 @@ def settle(reading: Reading, options: argparse.Namespace, up: np.ndarray, given:
         take_side(reading, options)
 
 
-def take_side(reading: Reading, options: argparse.Namespace) -> None:
+def take_side(reading: Reading, options: ToolSettings) -> None:
     """Set what is known of the faces of a part: `taken`, those of one side of a sheet, `angles` of the sharp edges
     between these, and `roles` by face; the projected areas of the faces that are seen from the punch, or of a block
     from the side of the sheet, `visible`, and that direction in words, `seen`."""
@@ -106,7 +106,7 @@ def take_side(reading: Reading, options: argparse.Namespace) -> None:
                           if edge.angle}
 
 
-def roles_of_block(reading: Reading, options: argparse.Namespace) -> dict[int, str]:
+def roles_of_block(reading: Reading, options: ToolSettings) -> dict[int, str]:
     """Return what those faces of a block that the user has chosen are for."""
     shape, own = reading.shape, [tag for tag in numbers_of(options.faces) if tag in reading.shape.tags]
     assert reading.direction
@@ -114,7 +114,7 @@ def roles_of_block(reading: Reading, options: argparse.Namespace) -> dict[int, s
     return {tag: role.name for tag, role in read_roles(shape, direction, outer).items()}
 
 
-def angles_of_block(gmsh: Any, reading: Reading, options: argparse.Namespace) -> dict[int, float]:
+def angles_of_block(gmsh: Any, reading: Reading, options: ToolSettings) -> dict[int, float]:
     """Return the angles of the sharp edges between the faces of a block that one tool touches, positive where the other
     tool is convex."""
     shape, up = reading.shape, rotation(options.rotate).T @ UP

@@ -7,6 +7,7 @@ the picture and for the courses of edges. Tools are not made of them.
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -55,6 +56,7 @@ class Shape:
     body: np.ndarray  # of the triangles (m,)
     closed: bool
     failed: list[int] = field(default_factory=list)
+    rims: dict[tuple[int, ...], Any] = field(default_factory=dict)  # of sets of faces, once they were asked for
 
     @cached_property
     def tags(self) -> list[int]:
@@ -110,6 +112,12 @@ class Shape:
     def of(self, faces: Iterable[int]) -> np.ndarray:
         """Return the triangles of faces."""
         return np.concatenate([np.zeros(0, int), *(self.cells[tag] for tag in faces)])
+
+    def marked(self, nodes: np.ndarray) -> np.ndarray:
+        """Return which of all nodes are the ones given (n,)."""
+        found = np.zeros(len(self.nodes), bool)
+        found[nodes] = True
+        return found
 
     def components(self, faces: Iterable[int]) -> list[set[int]]:
         """Return the sets of faces that are connected by edges, the largest area first."""

@@ -2,7 +2,7 @@
 """Figures that need no display, and the options that their commands share."""
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -48,9 +48,18 @@ def parser_of_pictures(name: str, text: str | None, table: str, output: str, siz
     return parser
 
 
-def parsed_pictures(parser: argparse.ArgumentParser, words: Sequence[str] | None) -> tuple[Any, list[str]]:
-    """Return the options, and the names of the runs: those of --label, then those of their folders."""
-    options = parser.parse_args(words)
-    if len(options.label) > len(options.runs):
-        parser.error("more labels than runs")
-    return options, options.label + [label_of(run) for run in options.runs[len(options.label):]]
+def labels_of(runs: Sequence[str | Path], labels: Sequence[str]) -> list[str]:
+    """Return the names of runs: those given, then those of their folders."""
+    if len(labels) > len(runs):
+        raise Problem("more labels than runs")
+    return [*labels, *(label_of(run) for run in runs[len(labels):])]
+
+
+def save_pictures(figure: Callable[..., Figure], parser: argparse.ArgumentParser, words: Sequence[str] | None) -> None:
+    """Draw the runs of a command line by a function that takes them, their labels, and the other options by name."""
+    options = vars(parser.parse_args(words))
+    output, runs, labels = (options.pop(name) for name in ("output", "runs", "label"))
+    if options["size"] is None:  # that of the function
+        del options["size"]
+    save(figure(runs, labels, **options), output)
+    print(output)

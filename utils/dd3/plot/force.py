@@ -14,13 +14,15 @@ before the end of its last phase.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from dd3.errors import Problem
-from dd3.plot.figures import new_figure, parsed_pictures, parser_of_pictures, save, tidy
+from dd3.plot.figures import labels_of, new_figure, parser_of_pictures, save_pictures, tidy
 from dd3.run import read_frame
 from dd3.sheet import AXES, length
 from dd3.tables import tools_in
@@ -153,6 +155,24 @@ def draw(axes: Axes, curves: Sequence[Curve], labels: Sequence[str], component: 
         axes.set_ylim(bottom=0.0)
 
 
+def figure(runs: Sequence[str | Path], labels: Sequence[str] = (), *, phase: Sequence[str] = (),
+           tool: str | None = None, component: str = "motion", factor: float = 1.0, title: str = "",
+           size: tuple[float, float] = (7.0, 4.5)) -> Figure:
+    """Return a figure of tool force over tool displacement of some runs.
+
+    phase: those drawn (the last that a tool controls). tool: by default the one that controls it. component: part of
+    the force: motion, against the motion, x, y, z, or magnitude. factor: on the force, 2 for a half model.
+    """
+    curves = [curve(read_frame(run, "history.csv", "phase", "travel", "progress"), tool, phase, component)
+              for run in runs]
+    drawn, axes = new_figure(size)
+    draw(axes, curves, labels_of(runs, labels), component, factor)
+    axes.set_title(title)
+    if len(curves) > 1 or labels:
+        axes.legend(frameon=False)
+    return drawn
+
+
 def main(words: Sequence[str] | None = None) -> None:
     """Draw the picture of the command line."""
     parser = parser_of_pictures("plot force", __doc__, "history.csv", "force.png", "7 by 4.5")
@@ -160,13 +180,4 @@ def main(words: Sequence[str] | None = None) -> None:
     parser.add_argument("--component", choices=["motion", "x", "y", "z", "magnitude"], default="motion",
                         help="part of the force: against the motion (default), along an axis, or all of it")
     parser.add_argument("--factor", type=float, default=1.0, help="factor on the force; 2 for a half model")
-    options, labels = parsed_pictures(parser, words)
-    curves = [curve(read_frame(run, "history.csv", "phase", "travel", "progress"), options.tool, options.phase,
-                    options.component) for run in options.runs]
-    figure, axes = new_figure(options.size or (7.0, 4.5))
-    draw(axes, curves, labels, options.component, options.factor)
-    axes.set_title(options.title)
-    if len(curves) > 1 or options.label:
-        axes.legend(frameon=False)
-    save(figure, options.output)
-    print(options.output)
+    save_pictures(figure, parser, words)

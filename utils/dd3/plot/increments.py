@@ -15,9 +15,10 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from dd3.errors import Problem
-from dd3.plot.figures import new_figure, parsed_pictures, parser_of_pictures, save, tidy
+from dd3.plot.figures import labels_of, new_figure, parser_of_pictures, save_pictures, tidy
 from dd3.run import read_frame
 
 # Colour of each limiter; those that only end an increment at a place have one.
@@ -71,19 +72,22 @@ def draw(axes: Axes, run: Increments, label: str) -> None:
                 title="limiter: increments", title_fontsize=8, alignment="left")
 
 
-def main(words: Sequence[str] | None = None) -> None:
-    """Draw the picture of the command line."""
-    options, labels = parsed_pictures(parser_of_pictures(
-        "plot increments", __doc__, "status.csv", "increments.png", "7.5 by 2.6 for each run"), words)
-    runs = [Increments(run, options.phase) for run in options.runs]
-    figure, axes = new_figure(options.size or (7.5, 0.3 + 2.6 * len(runs)), len(runs), sharex=True, sharey=True,
-                              squeeze=False)
-    for run, label, plot in zip(runs, labels, axes[:, 0], strict=True):
+def figure(runs: Sequence[str | Path], labels: Sequence[str] = (), *, phase: Sequence[str] = (), title: str = "",
+           size: tuple[float, float] | None = None) -> Figure:
+    """Return a figure of the increments of some runs, a plot each, in some phases (the last one)."""
+    found = [Increments(run, phase) for run in runs]
+    drawn, axes = new_figure(size or (7.5, 0.3 + 2.6 * len(found)), len(found), sharex=True, sharey=True, squeeze=False)
+    for run, label, plot in zip(found, labels_of(runs, labels), axes[:, 0], strict=True):
         draw(plot, run, label)
     axes[0, 0].set_yscale("log")
-    axes[0, 0].set_ylim(min(run.r.min() for run in runs) / 1.5, 1.5 * max(run.r.max() for run in runs))
-    axes[0, 0].set_xlim(left=min(0.0, *(run.travel.min() for run in runs)), right=max(run.travel[-1] for run in runs))
+    axes[0, 0].set_ylim(min(run.r.min() for run in found) / 1.5, 1.5 * max(run.r.max() for run in found))
+    axes[0, 0].set_xlim(left=min(0.0, *(run.travel.min() for run in found)), right=max(run.travel[-1] for run in found))
     axes[-1, 0].set_xlabel("travel (mm)")
-    figure.suptitle(options.title)
-    save(figure, options.output)
-    print(options.output)
+    drawn.suptitle(title)
+    return drawn
+
+
+def main(words: Sequence[str] | None = None) -> None:
+    """Draw the picture of the command line."""
+    save_pictures(figure, parser_of_pictures("plot increments", __doc__, "status.csv", "increments.png",
+                                             "7.5 by 2.6 for each run"), words)

@@ -2,12 +2,13 @@
 """Draw the deformed sheet between its tools, coloured by a field, and its draw-beads. No display is needed.
 
     dd3 plot sheet bending.out
-    dd3 plot sheet bending.out --at 10 --at 40 --field stress:11 --view front --mirror x
+    dd3 plot sheet bending.out --at 10 --at 40 --field stress:11 --view front --mirror x --mesh
     dd3 plot sheet cup.out --field level --hide all             # elements by how often they have been divided
     dd3 plot sheet bending.dat                                 # before a run
 
 The sheet and the tools' displacements are read from fields.vtkhdf, their surfaces from the .bez files that
-the run used; for files that were moved since give --tool. Several --at give several pictures below each other. Of an
+the run used; for files that were moved since give --tool. Several --at give several pictures below each other. Strains
+and thinning are in per cent, and so are their --limits; zero is white where a field has both signs. Of an
 input file the initial state is drawn, which the program writes after its checks, also if a tool lies in the sheet: do
 the tools lie where they should?
 """
@@ -15,29 +16,31 @@ the tools lie where they should?
 import argparse
 import contextlib
 import math
-import sys
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from dataclasses import field as dataclass_field
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import matplotlib
 import numpy as np
 import pyvista as pv
+from matplotlib.figure import Figure
 
-from dd3 import rendering
+from dd3 import places, rendering
 from dd3.bound import closed_skin
 from dd3.command import new_parser
-from dd3.errors import Problem
+from dd3.errors import LOG, Problem
 from dd3.fields import AT, Fields, text_of
-from dd3.plot import levels
+from dd3.plot import levels, scale
 from dd3.plot.beads import draw_beads
+from dd3.plot.scale import Scale
 from dd3.programs import add_program, command, find_program, launch, setting
 from dd3.progress import each
 from dd3.run import file_of, read_job
 from dd3.sheet import AXES
-from dd3.tools.blocks import lines_of
-from dd3.tools.surface import read_lines
+from dd3.tools.surface import Patches, points_on, read_patches
 
 VIEWS = {  # direction from the sheet to the camera, and the upward direction
     "iso": ((-0.9, -1.6, 0.9), (0, 0, 1)),
@@ -49,12 +52,13 @@ VIEWS = {  # direction from the sheet to the camera, and the upward direction
     "below": ((-0.9, -1.6, -0.9), (0, 0, 1)),
 }
 BAR_HEIGHT = 100  # pixels of the strip below the pictures that holds the colour bar
+BAR_CHARACTERS = 45  # of the numbers at a colour bar, at most
 POINTS = 200000  # of a tool, about; at most 25 x 25 of a patch
-MANY_PATCHES = 300  # number above which only the outer edges of a tool are drawn
+SHARP = 40  # angle between faces of the sheet or of a tool above which their edge is sharp, degrees
+ON_PLANE = 1e-6  # distance from a plane of symmetry of what lies on it, over the size of a surface
+FIELD, DOTS = "equivalent_plastic_strain", 150  # field of a run; pixels of an inch of a figure
 TOOL_COLOURS = ["#8d99a6", "#a69b8d", "#93a68d", "#a08da6"]
 
-
-Patches = list[tuple[np.ndarray, np.ndarray]]  # points (v, u, 3) and weights (v, u)
 Box = tuple[np.ndarray, np.ndarray]
 
 
@@ -69,19 +73,61 @@ class Placement(NamedTuple):
         return points @ self.axes + self.displacement
 
 
-class Run(Fields):
-    """A run: the sheet at its steps, the tools' displacements, and the lines of the draw-beads to draw."""
+@dataclass
+class Style:
+    """How a sheet is drawn.
 
-    def __init__(self, run: str | Path, job: dict[str, Any] | None = None) -> None:
+    field: field, or field:component, such as stress:11; level: how often the elements were divided. cells: values at
+    the elements in place of the nodes. limits: range of the colours, in the unit shown: strains and thinning in per
+    cent. colours: colour map, by default that of dd3.plot.scale. view: one of VIEWS, or a direction "x y z". zoom: 1
+    for the whole sheet. focus: point in the middle, mm. mirror: planes of symmetry to complete the model at, such as
+    "xy". tools: files of surfaces in place of those that the run names, by the names of the tools. hide: tools and
+    draw-beads to leave out, or "all". mesh: draw the edges of the elements. size: of one picture, pixels.
+    """
+
+    field: str = FIELD
+    cells: bool = False
+    limits: Sequence[float] | None = None
+    colours: str | list[str] | None = None
+    view: str = "iso"
+    zoom: float = 1.0
+    focus: Sequence[float] | None = None
+    mirror: Sequence[str] = ()
+    tools: Mapping[str, str | Path] = dataclass_field(default_factory=dict)
+    hide: Sequence[str] = ()
+    tool_opacity: float = 0.35
+    mesh: bool = False
+    size: Sequence[int] = (1500, 800)
+
+    def __post_init__(self) -> None:
+        self.mirror = sorted(set("".join(self.mirror)))
+        if self.field == levels.LEVEL:
+            self.cells = self.mesh = True
+        if self.view not in VIEWS and not direction(self.view):
+            raise Problem("--view takes one of " + ", ".join(VIEWS) + ' or a direction "x y z"')
+        if self.limits and not self.limits[0] < self.limits[1]:
+            raise Problem("--limits takes the lower one first")
+        if isinstance(self.colours, str) and self.colours not in matplotlib.colormaps:
+            raise Problem(f"no colour map '{self.colours}'; some are viridis, plasma, cividis, turbo, coolwarm")
+        if min(self.size) < 1 or not self.zoom > 0:
+            raise Problem("--size and --zoom take positive numbers")
+
+
+class Run(Fields):
+    """A run: the sheet at its steps, the tools' displacements, and the lines of the draw-beads to draw. `before`: of an
+    input file, before a run."""
+
+    def __init__(self, run: str | Path, job: dict[str, Any] | None = None, before: bool = False) -> None:
         super().__init__(run)
+        self.before = before
         self.job = read_job(self.folder) if job is None else job
         self.beads = {bead["name"]: np.array(bead["points"]) for bead in self.job["drawbeads"]}
 
     def mesh(self, step: int, field: str, at_cells: bool = False) -> tuple[pv.UnstructuredGrid, str]:
-        """Return the sheet at a step with its field as `shown`, and the label of the field."""
+        """Return the sheet at a step with its field as `shown`, in the unit of its label, and the label."""
         mesh = self.shape(step)
         data = mesh.cell_data if at_cells else mesh.point_data
-        data["shown"], label = self.component(step, field, at_cells)
+        data["shown"], label = scale.shown(field, *self.component(step, field, at_cells))
         return mesh, label
 
     def tool_placements(self, step: int) -> dict[str, Placement]:
@@ -98,96 +144,120 @@ class Run(Fields):
         return {name: Placement(*of_tool) for name, *of_tool in zip(names, axes, displacements, strict=True)}
 
 
-def read_patches(path: Path) -> Patches:
-    """Return the patches of a .bez file."""
-    try:
-        return read_lines([line.split() for line in lines_of(path)])
-    except (ValueError, IndexError):
-        raise Problem(f"{path}: not a file of Bézier patches") from None
-
-
-def bernstein(degree: int, t: np.ndarray) -> np.ndarray:
-    """Return the Bernstein polynomials of a degree at t."""
-    return np.array([math.comb(degree, i) * t**i * (1 - t) ** (degree - i) for i in range(degree + 1)])
-
-
-def tool_surface(patches: Patches, placement: Placement, count: int = POINTS) -> tuple[pv.PolyData, pv.PolyData]:
-    """Return the surface of a tool at its place, of about `count` points, and the edges of its patches; of many patches
-    its outer edges."""
+def tool_surface(patches: Patches, placement: Placement, count: int = POINTS) -> pv.PolyData:
+    """Return the surface of a tool at its place, of about `count` points."""
     finest = max(2, min(24, round(math.sqrt(count / len(patches)))))
-    points, faces, lines, first = [], [], [], 0
+    points, faces, first = [], [], 0
     for shape in {weights.shape for _, weights in patches}:
         alike = [patch for patch in patches if patch[1].shape == shape]
-        weights = np.array([weights for _, weights in alike])
-        counts = [1 if size == 2 else finest for size in shape]
-        bv, bu = (bernstein(size - 1, np.linspace(0, 1, count + 1)) for size, count in zip(shape, counts))
-        total = np.einsum("pji,jb,ia->pba", weights, bv, bu)
-        xyz = np.einsum("pji,pjid,jb,ia->pbad", weights, np.array([p for p, _ in alike]), bv, bu) / total[..., None]
+        places = [np.linspace(0, 1, 2 if size == 2 else finest + 1) for size in shape]
+        xyz = points_on(np.array([p for p, _ in alike]), np.array([weights for _, weights in alike]), *places)
         points.append(placement.of(xyz.reshape(-1, 3)))
-        number = first + np.arange(total.size).reshape(total.shape)
+        number = first + np.arange(xyz[..., 0].size).reshape(xyz.shape[:3])
         corners = number[:, :-1, :-1], number[:, :-1, 1:], number[:, 1:, 1:], number[:, 1:, :-1]
         faces.append(np.stack(corners, axis=-1).reshape(-1, 4))
-        for side in (number[:, 0], number[:, -1], number[:, :, 0], number[:, :, -1]):
-            lines.append(np.stack((side[:, :-1], side[:, 1:]), axis=-1).reshape(-1, 2))
-        first += total.size
-    xyz, cells, edges = map(np.concatenate, (points, faces, lines))
-    skin = pv.PolyData(xyz, np.insert(cells, 0, 4, axis=1))
-    if len(patches) <= MANY_PATCHES:
-        return skin, pv.PolyData(xyz, lines=np.insert(edges, 0, 2, axis=1))
-    joined = skin.clean(tolerance=1e-6)
-    return skin, joined.extract_feature_edges(boundary_edges=True, feature_edges=True, manifold_edges=False,
-                                              non_manifold_edges=False, feature_angle=30)
+        first += number.size
+    return pv.PolyData(np.concatenate(points), np.insert(np.concatenate(faces), 0, 4, axis=1))
 
 
 def reflected(mesh: Any, axes: Sequence[str]) -> list[Any]:
     """Return the mesh and its mirror images in the planes normal to the axes."""
     parts = [mesh]
     for axis in axes:
-        normal = tuple(float(axis == a) for a in AXES)
-        parts += [part.reflect(normal, point=(0.0, 0.0, 0.0)) for part in parts]
+        parts += [part.reflect(normal_of(axis), point=(0.0, 0.0, 0.0)) for part in parts]
     return parts
 
 
-def add_sheet(plotter: Any, mesh: pv.UnstructuredGrid, options: argparse.Namespace, limits: Sequence[float]) -> None:
+def normal_of(axis: str) -> tuple[float, ...]:
+    """Return the unit vector along an axis."""
+    return tuple(float(axis == other) for other in AXES)
+
+
+def completed(skin: pv.PolyData, axes: Sequence[str]) -> pv.PolyData:
+    """Return a surface and its mirror images as one, without seams."""
+    return pv.merge(reflected(skin, axes), merge_points=False).clean(tolerance=ON_PLANE, absolute=False)
+
+
+def sheet_skin(mesh: pv.UnstructuredGrid, axes: Sequence[str]) -> pv.PolyData:
+    """Return the surface of a sheet, completed at its planes of symmetry; the faces on these are left out."""
+    skin = closed_skin(mesh).extract_surface(algorithm="dataset_surface", nonlinear_subdivision=2)
+    near = ON_PLANE * diagonal((skin.points.min(axis=0), skin.points.max(axis=0)))
+    for axis in axes:
+        off = np.abs(skin.points[:, AXES.index(axis)]) > near
+        cut = [cell for cell, nodes in enumerate(skin.irregular_faces) if not off[nodes].any()]
+        skin = skin.remove_cells(cut) if cut else skin
+    return completed(skin, axes)
+
+
+def tool_skin(patches: Patches, placement: Placement, axes: Sequence[str], inside: np.ndarray) -> pv.PolyData:
+    """Return the surface of a tool at its place, completed at the planes of symmetry; what lies beyond them, seen from
+    a point inside, is left out."""
+    skin = tool_surface(patches, placement)
+    for axis in axes:
+        skin = skin.clip(normal_of(axis), origin=(0.0, 0.0, 0.0), invert=bool(inside[AXES.index(axis)] < 0))
+    return completed(skin, axes)
+
+
+def sharp_edges(skin: pv.PolyData) -> pv.PolyData:
+    """Return the outer edges of a surface, and those between faces at an angle."""
+    # Mirror images and neighbouring patches may be turned the other way.
+    turned = skin.clean(tolerance=ON_PLANE, absolute=False).compute_normals(point_normals=False)
+    return turned.extract_feature_edges(boundary_edges=True, feature_edges=True, manifold_edges=False,
+                                        non_manifold_edges=False, feature_angle=SHARP)
+
+
+def add_surface(plotter: Any, skin: pv.PolyData, **options: Any) -> None:
+    """Add a surface, smooth between its sharp edges, and these; options are those of pyvista."""
+    plotter.add_mesh(skin, smooth_shading=True, split_sharp_edges=True, feature_angle=SHARP, show_scalar_bar=False,
+                     **rendering.SURFACE, **options)
+    plotter.add_mesh(sharp_edges(skin), color=rendering.EDGE, line_width=1.5)
+
+
+def add_sheet(plotter: Any, mesh: pv.UnstructuredGrid, style: Style, limits: Scale) -> None:
     """Add a sheet with the field `shown`, completed at the planes of symmetry."""
-    for part in reflected(closed_skin(mesh), options.mirror):
-        skin = part.extract_surface(algorithm="dataset_surface", nonlinear_subdivision=2)
-        plotter.add_mesh(skin, scalars="shown", cmap=options.colours, clim=limits, show_edges=not options.no_edges,
-                         edge_color="#333333", line_width=1, show_scalar_bar=False, smooth_shading=False,
-                         lighting=True, ambient=0.25)
+    add_surface(plotter, sheet_skin(mesh, style.mirror), scalars="shown", clim=limits[:2],
+                cmap=scale.colours_of(limits, style.colours), show_edges=style.mesh, edge_color=rendering.MESH,
+                line_width=1)
 
 
-def draw(plotter: Any, run: Run, step: int, options: argparse.Namespace, tools: dict[str, Patches],
-         limits: Sequence[float], box: Box) -> None:
+def draw(plotter: Any, run: Run, step: int, style: Style, tools: dict[str, Patches],
+         limits: Scale, box: Box) -> None:
     """Draw one picture."""
-    add_sheet(plotter, run.mesh(step, options.field, options.cells)[0], options, limits)
+    add_sheet(plotter, run.mesh(step, style.field, style.cells)[0], style, limits)
     # Tools are shifted away from the eye, so that the colours of the sheet show where a tool touches it.
-    behind = -0.006 * diagonal(box) * eye(options)[0]
-    placements = run.tool_placements(step)
+    behind = -0.006 * diagonal(box) * eye(style.view)[0]
+    placements, inside = run.tool_placements(step), run.points(step).mean(axis=0)
     for number, (name, patches) in enumerate(tools.items()):
-        if name not in placements:
-            continue
-        skin, edges = tool_surface(patches, placements[name])
-        for part in reflected(skin, options.mirror):
-            plotter.add_mesh(part.translate(behind), color=TOOL_COLOURS[number % len(TOOL_COLOURS)],
-                             opacity=options.tool_opacity, smooth_shading=False, ambient=0.2)
-        for part in reflected(edges, options.mirror):
-            plotter.add_mesh(part.translate(behind), color="#444444", line_width=1.5)
-    towards = 0.006 * diagonal(box) * eye(options)[0]
-    draw_beads(plotter, run.beads.values(), run.points(step), towards, lambda line: reflected(line, options.mirror))
-    aim(plotter, box, options)
-    text = plotter.add_text(run.state(step), font_size=11, color="black", position="upper_left")
+        if name in placements:
+            skin = tool_skin(patches, placements[name], style.mirror, inside)
+            add_surface(plotter, skin.translate(behind), color=TOOL_COLOURS[number % len(TOOL_COLOURS)],
+                        opacity=style.tool_opacity)
+    towards = 0.006 * diagonal(box) * eye(style.view)[0]
+    draw_beads(plotter, run.beads.values(), run.points(step), towards, lambda line: reflected(line, style.mirror))
+    aim(plotter, box, style)
+    text = plotter.add_text(run.state(step), font_size=9, color="black", position="upper_left")
+    rendering.use_font(text.prop)
     text.prop.SetBackgroundColor(1, 1, 1)
     text.prop.SetBackgroundOpacity(1)
 
 
-def draw_bar(plotter: Any, label: str, options: argparse.Namespace, limits: Sequence[float]) -> None:
-    """Draw the colour bar in a strip below the pictures."""
-    table = pv.LookupTable(options.colours, scalar_range=limits)
+def labelled(limits: Scale) -> list[float]:
+    """Return the ticks of a colour bar that have room for their numbers, zero among them."""
+    ticks = limits.ticks
+    longest = max((len(f"{tick:.{limits.digits}f}") for tick in ticks), default=0)
+    every = math.ceil(longest * len(ticks) / BAR_CHARACTERS) or 1
+    return ticks[int(np.abs(ticks).argmin()) % every::every] if ticks else []
+
+
+def add_bar(plotter: Any, label: str, limits: Scale, colours: str | list[str] | None, **place: Any) -> None:
+    """Add the colour bar of a scale, with its ticks; `place` and the like are options of pyvista."""
     mapper = pv.DataSetMapper(pv.PointSet(np.zeros((1, 3))))
-    mapper.lookup_table = table
-    plotter.add_scalar_bar(title=label + "\n", mapper=mapper, vertical=False, position_x=0.3, width=0.4, position_y=0.2,
-                           height=0.7, title_font_size=20, label_font_size=17, fmt="%.3g", color="black")
+    mapper.lookup_table = pv.LookupTable(scale.colours_of(limits, colours), scalar_range=limits[:2])
+    bar = plotter.add_scalar_bar(title=label + "\n", mapper=mapper, fmt=f"%.{limits.digits}f", color="black", **place)
+    bar.SetCustomLabels(pv.convert_array(np.array(labelled(limits))))
+    bar.SetUseCustomLabels(True)
+    for text in (bar.GetTitleTextProperty(), bar.GetLabelTextProperty()):
+        rendering.use_font(text)
 
 
 def diagonal(box: Box) -> float:
@@ -195,30 +265,30 @@ def diagonal(box: Box) -> float:
     return float(np.linalg.norm(box[1] - box[0]))
 
 
-def box_of(run: Run, steps: Sequence[int], options: argparse.Namespace, tools: dict[str, Patches]) -> Box:
+def box_of(run: Run, steps: Sequence[int], mirror: Sequence[str], tools: dict[str, Patches]) -> Box:
     """Return the corners of the box that holds the sheet at all steps drawn; before a run, the tools as well."""
     points = np.concatenate([run.points(step) for step in steps])
-    if is_deck(options.run):
+    if run.before:
         placements = run.tool_placements(0)
         points = np.concatenate([points] + [placements[name].of(patch.reshape(-1, 3))
                                             for name in tools if name in placements for patch, _ in tools[name]])
     low, high = points.min(axis=0), points.max(axis=0)
-    for axis in options.mirror:
+    for axis in mirror:
         i = AXES.index(axis)
         low[i], high[i] = min(low[i], -high[i]), max(high[i], -low[i])
     return low, high
 
 
-def eye(options: argparse.Namespace) -> tuple[np.ndarray, np.ndarray]:
-    """Return the unit vector towards the camera and the upward direction."""
-    place, up = VIEWS[options.view] if options.view in VIEWS else (tuple(map(float, options.view.split())), (0, 0, 1))
+def eye(view: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return the unit vector towards the camera and the upward direction of a view."""
+    place, up = VIEWS[view] if view in VIEWS else (tuple(map(float, view.split())), (0, 0, 1))
     return np.array(place) / np.linalg.norm(place), np.array(up)
 
 
-def aim(plotter: Any, box: Box, options: argparse.Namespace) -> None:
+def aim(plotter: Any, box: Box, style: Style) -> None:
     """Point the camera at the sheet."""
-    (place, up), (low, high) = eye(options), box
-    centre = np.array(options.focus) if options.focus else (low + high) / 2
+    (place, up), (low, high) = eye(style.view), box
+    centre = np.array(style.focus) if style.focus else (low + high) / 2
     plotter.camera_position = [centre + 2 * diagonal(box) * place, centre, up]
     plotter.enable_parallel_projection()
     right = np.cross(up, place)
@@ -227,7 +297,7 @@ def aim(plotter: Any, box: Box, options: argparse.Namespace) -> None:
     width, height = np.subtract(plotter.renderer.viewport[2:], plotter.renderer.viewport[:2]) * plotter.window_size
     half_width = np.abs(right) @ (high - low) / 2
     half_height = np.abs(over) @ (high - low) / 2
-    plotter.camera.parallel_scale = max(1.15 * half_height, 1.1 * half_width * height / width, 1e-3) / options.zoom
+    plotter.camera.parallel_scale = max(1.15 * half_height, 1.1 * half_width * height / width, 1e-3) / style.zoom
     plotter.reset_camera_clipping_range()
 
 
@@ -252,8 +322,10 @@ def command_line() -> argparse.ArgumentParser:
                         "often the elements have been divided "
                         "(equivalent_plastic_strain; of an input file thickness)")
     parser.add_argument("--cells", action="store_true", help="values at the elements instead of the nodes")
-    parser.add_argument("--limits", type=float, nargs=2, metavar=("LOW", "HIGH"), help="range of the colours")
-    parser.add_argument("--colours", default="viridis", help="colour map (viridis)")
+    parser.add_argument("--limits", type=float, nargs=2, metavar=("LOW", "HIGH"),
+                        help="range of the colours, in the unit of the colour bar: strains and thinning in per cent")
+    parser.add_argument("--colours", metavar="MAP", help=f"colour map of matplotlib ({scale.SEQUENTIAL}; where a field "
+                        f"has both signs {scale.DIVERGING} with white at zero)")
     parser.add_argument("--view", default="iso", help="one of " + ", ".join(VIEWS) + ', or a direction "x y z"')
     parser.add_argument("--zoom", type=float, default=1.0, help="1: the whole sheet")
     parser.add_argument("--focus", type=float, nargs=3, metavar=("X", "Y", "Z"), help="point in the middle, mm")
@@ -263,7 +335,7 @@ def command_line() -> argparse.ArgumentParser:
     parser.add_argument("--hide", action="append", default=[], metavar="NAME",
                         help="tool or draw-bead to leave out, or 'all'")
     parser.add_argument("--tool-opacity", type=float, default=0.35)
-    parser.add_argument("--no-edges", action="store_true", help="leave out the elements' edges")
+    parser.add_argument("--mesh", action="store_true", help="draw the edges of the elements")
     parser.add_argument("--output", default="sheet.png", help="picture to write (sheet.png)")
     parser.add_argument("--size", type=int, nargs=2, default=[1500, 800], metavar=("W", "H"),
                         help="size of one picture in pixels")
@@ -271,43 +343,23 @@ def command_line() -> argparse.ArgumentParser:
     return parser
 
 
-def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
-    """Return the options after their checks."""
-    parser = command_line()
-    options = parser.parse_args(words)
-    options.mirror = sorted(set("".join(options.mirror)))
-    options.cells = options.cells or options.field == levels.LEVEL
-    if options.view not in VIEWS and not direction(options.view):
-        parser.error("--view takes one of " + ", ".join(VIEWS) + ' or a direction "x y z"')
-    if options.limits and not options.limits[0] < options.limits[1]:
-        parser.error("--limits takes the lower one first")
-    if options.colours not in matplotlib.colormaps:
-        parser.error(f"no colour map '{options.colours}'; some are viridis, plasma, cividis, turbo, coolwarm")
-    if min(options.size) < 1 or not options.zoom > 0:
-        parser.error("--size and --zoom take positive numbers")
-    if any("=" not in item for item in options.tool):
-        parser.error("--tool takes NAME=FILE")
-    return options
-
-
-def find_tools(run: Run, options: argparse.Namespace) -> dict[str, Patches]:
+def find_tools(run: Run, hide: Sequence[str] = (), tools: Mapping[str, str | Path] | None = None
+               ) -> dict[str, Patches]:
     """Return the patches of the tools to draw, and leave out the draw-beads that are hidden."""
-    if "all" in options.hide:
+    if "all" in hide:
         run.beads = {}
         return {}
     files = {tool["name"]: file_of(run.job, run.folder, tool["patches"]) for tool in run.job["tools"]}
-    for item in options.tool:
-        name, _, file = item.partition("=")
-        files[name.lower()] = Path(file)
-    options.hide = [name.lower() for name in options.hide]
-    unknown = [name for name in options.hide if name not in files and name not in run.beads]
+    files |= {name.lower(): Path(file) for name, file in (tools or {}).items()}
+    hide = [name.lower() for name in hide]
+    unknown = [name for name in hide if name not in files and name not in run.beads]
     if unknown:
         raise Problem(f"no tool '{unknown[0]}' to hide; there are: {', '.join([*files, *run.beads]) or 'none'}")
-    run.beads = {name: line for name, line in run.beads.items() if name not in options.hide}
-    shown = {name: file for name, file in files.items() if name not in options.hide}
+    run.beads = {name: line for name, line in run.beads.items() if name not in hide}
+    shown = {name: file for name, file in files.items() if name not in hide}
     for name, file in shown.items():
         if not file.is_file():
-            print(f"{file}: no such file; without it the tool '{name}' is not drawn, see --tool", file=sys.stderr)
+            LOG.warning(f"{file}: no such file; without it the tool '{name}' is not drawn, see --tool")
     return {name: read_patches(file) for name, file in shown.items() if file.is_file()}
 
 
@@ -317,39 +369,38 @@ def is_deck(run: str | Path) -> bool:
 
 
 @contextlib.contextmanager
-def opened(options: argparse.Namespace) -> Iterator[Run]:
-    """Yield the run; of an input file, the initial state, written by the program into a folder removed afterwards."""
-    if not is_deck(options.run):
-        options.field = options.field or "equivalent_plastic_strain"
-        yield Run(options.run)
+def opened(run: str | Path, program: str | Path | None = None, settings: Mapping[str, object] | None = None
+           ) -> Iterator[Run]:
+    """Yield the run; of an input file, the initial state with values of parameters, which the program writes into a
+    folder that is removed afterwards."""
+    if not is_deck(run):
+        yield Run(run)
         return
-    options.field = options.field or "thickness"
     with tempfile.TemporaryDirectory(prefix="dd3imp_") as folder:
-        done = launch(command(find_program(options.program), options.run, None,
-                              ["--check", "--quiet", "--initial", folder], dict(options.set)))
+        done = launch(command(find_program(program or places.program()), run, None,
+                              ["--check", "--quiet", "--initial", folder], settings))
         if done.code != 0:
             if not (Path(folder) / "fields.vtkhdf").exists():
                 raise Problem(done.errors.strip())
-            print(done.errors.strip(), file=sys.stderr)
-        yield Run(folder)
+            LOG.warning(done.errors.strip())
+        yield Run(folder, before=True)
 
 
-def limits_of(run: Run, steps: Sequence[int], options: argparse.Namespace) -> Sequence[float]:
-    """Return the range of the colours: that of --limits, or of all values drawn."""
-    if options.field == levels.LEVEL:
-        return levels.limits_of(int(max(run.mesh(step, options.field, True)[0]["shown"].max() for step in steps)))
-    if options.limits:
-        return list(options.limits)
-    ranges = [run.mesh(step, options.field, options.cells)[0]["shown"] for step in steps]
-    low, high = min(r.min() for r in ranges), max(r.max() for r in ranges)
-    if high - low <= 1e-9 * max(abs(low), abs(high)):
-        high = low + max(1e-3, 1e-3 * abs(low))
-    return [low, high]
+def limits_of(run: Run, steps: Sequence[int], style: Style) -> Scale:
+    """Return the scale of the colours: between the limits of --limits, or round for all values drawn."""
+    if style.limits and style.field != levels.LEVEL:
+        return scale.own_scale(style.limits)
+    drawn = [run.mesh(step, style.field, style.cells)[0]["shown"] for step in steps]
+    low, high = (float(end) for end in (min(map(np.min, drawn)), max(map(np.max, drawn))))
+    if style.field == levels.LEVEL:
+        low, high = levels.limits_of(int(high))
+        return Scale(low, high, 1.0)
+    return scale.round_scale(low, high)
 
 
-def new_plotter(options: argparse.Namespace, count: int) -> Any:
-    """Return the plotter of `count` pictures and the strip of the colour bar."""
-    window = [options.size[0], options.size[1] * count]
+def new_plotter(size: Sequence[int], count: int = 1) -> Any:
+    """Return the plotter of `count` pictures of a size and the strip of the colour bar."""
+    window = [size[0], size[1] * count]
     bar = min(BAR_HEIGHT, window[1] / 2)
     plotter = rendering.new_plotter(shape=(count + 1, 1), row_weights=[(window[1] - bar) / count] * count + [bar],
                                     border=False, window_size=window)
@@ -358,57 +409,86 @@ def new_plotter(options: argparse.Namespace, count: int) -> Any:
     return plotter
 
 
-def make_picture(run: Run, options: argparse.Namespace) -> None:
-    """Draw the steps of the options and write the picture."""
-    tools = find_tools(run, options)
-    steps = [run.step_at(place) for place in options.at] if options.at else [run.last]
-    limits, box = limits_of(run, steps, options), box_of(run, steps, options, tools)
+def make_picture(run: Run, style: Style, output: str | Path | None, at: Sequence[str] = ()) -> np.ndarray:
+    """Draw the sheet at some places (AT), by default the last step, one picture below the other; write it, and return
+    its colours (height, width, 3)."""
+    tools = find_tools(run, style.hide, style.tools)
+    steps = [run.step_at(place) for place in at] or [run.last]
+    limits, box = limits_of(run, steps, style), box_of(run, steps, style.mirror, tools)
     names = []
-    if options.field == levels.LEVEL:
-        names = levels.names_of([run.mesh(step, options.field, True)[0]["shown"] for step in steps])
-        options.colours = levels.colours_of(len(names) - 1)
-    plotter = new_plotter(options, len(steps))
+    if style.field == levels.LEVEL:
+        names = levels.names_of([run.mesh(step, style.field, True)[0]["shown"] for step in steps])
+        style = replace(style, colours=levels.colours_of(len(names) - 1))
+    plotter = new_plotter(style.size, len(steps))
     for row, step in enumerate(each(steps, "pictures")):
         plotter.subplot(row, 0)
-        draw(plotter, run, step, options, tools, limits, box)
-    finish(plotter, run.mesh(steps[0], options.field, options.cells)[1], options, limits, names)
+        draw(plotter, run, step, style, tools, limits, box)
+    return finish(plotter, run.mesh(steps[0], style.field, style.cells)[1], style.colours, limits, output, names)
 
 
-def make_map(mesh: pv.UnstructuredGrid, label: str, options: argparse.Namespace) -> None:
+def make_map(mesh: pv.UnstructuredGrid, label: str, style: Style, output: str | Path) -> None:
     """Draw a sheet alone with its field `shown` and write the picture."""
-    points = np.concatenate([part.points for part in reflected(mesh, options.mirror)])
-    limits = options.limits or (0.0, float(mesh.point_data["shown"].max()) or 1.0)
-    plotter = new_plotter(options, 1)
+    points = np.concatenate([part.points for part in reflected(mesh, style.mirror)])
+    values = mesh.point_data["shown"]
+    limits = scale.own_scale(style.limits) if style.limits else scale.round_scale(float(min(0.0, values.min())),
+                                                                                     float(values.max()))
+    plotter = new_plotter(style.size)
     plotter.subplot(0, 0)
-    add_sheet(plotter, mesh, options, limits)
-    aim(plotter, (points.min(axis=0), points.max(axis=0)), options)
-    finish(plotter, label, options, limits)
+    add_sheet(plotter, mesh, style, limits)
+    aim(plotter, (points.min(axis=0), points.max(axis=0)), style)
+    finish(plotter, label, style.colours, limits, output)
 
 
-def finish(plotter: Any, label: str, options: argparse.Namespace, limits: Sequence[float],
-           names: Sequence[str] = ()) -> None:
-    """Draw the colour bar below the pictures, of levels the legend with their names, and write them."""
+def figure(run: str | Path, at: Sequence[str | float] = (), program: str | Path | None = None,
+           set: Mapping[str, object] | None = None, **style: Any) -> Figure:
+    """Return a figure of the sheet between its tools; of an input file, of the state before the run.
+
+    at: travels in mm, or phases (the last step). program, set: of an input file, the program and values of parameters.
+    style: members of Style.
+    """
+    at = [at] if isinstance(at, str | float | int) else at
+    with opened(run, program, set) as opened_run:
+        style.setdefault("field", "thickness" if opened_run.before else FIELD)
+        drawn = Style(**style)
+        image = make_picture(opened_run, drawn, None, [str(place) for place in at])
+    found = Figure(figsize=(image.shape[1] / DOTS, image.shape[0] / DOTS), dpi=DOTS)
+    axes = found.add_axes((0, 0, 1, 1))
+    axes.imshow(image)
+    axes.axis("off")
+    return found
+
+
+def finish(plotter: Any, label: str, colours: str | list[str] | None, limits: Scale, output: str | Path | None,
+           names: Sequence[str] = ()) -> np.ndarray:
+    """Draw the colour bar below the pictures, of levels the legend with their names; write and return them."""
     plotter.subplot(plotter.shape[0] - 1, 0)
     if names:
         levels.draw_legend(plotter, names)
     else:
-        draw_bar(plotter, label, options, limits)
+        add_bar(plotter, label, limits, colours, vertical=False, position_x=0.25, width=0.5, position_y=0.2,
+                height=0.7, title_font_size=17, label_font_size=15)
     try:
-        plotter.screenshot(options.output)
+        return np.asarray(plotter.screenshot(output, return_img=True))
     except (OSError, ValueError) as error:
-        raise Problem(f"{options.output}: {error}") from None
+        raise Problem(f"{output}: {error}") from None
     finally:
         plotter.close()
 
 
 def main(words: Sequence[str] | None = None) -> None:
     """Draw the picture of the command line."""
-    options = arguments(words)
-    with opened(options) as run:
-        if options.list:
+    parser = command_line()
+    options = vars(parser.parse_args(words))
+    deck, output, at, shown, listed = (options.pop(name) for name in ("run", "output", "at", "tool", "list"))
+    if any("=" not in item for item in shown):
+        parser.error("--tool takes NAME=FILE")
+    with opened(deck, options.pop("program"), dict(options.pop("set"))) as run:
+        options["field"] = options["field"] or ("thickness" if run.before else FIELD)
+        style = Style(**options, tools=dict(item.split("=", 1) for item in shown))
+        if listed:
             print("travel (mm): " + " ".join(f"{t:.4g}" for t in run.travel))
             print("at nodes: " + ", ".join(run.grid["PointData"]))
             print("at cells: " + ", ".join(run.grid["CellData"]))
             return
-        make_picture(run, options)
-        print(options.output)
+        make_picture(run, style, output, at or ())
+        print(output)

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Studies: parameters of an input file varied; the bending study of docs/reports/bending_study.md."""
+"""Studies: parameters of an input file varied."""

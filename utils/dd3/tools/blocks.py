@@ -2,7 +2,7 @@
 """Keyword blocks of shape files, which have the syntax of dd3imp's input."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -25,22 +25,33 @@ class Block:
 def lines_of(path: str | Path, parents: tuple[Path, ...] = ()) -> Iterator[str]:
     """Yield the lines of a file and of those it includes; no comments, no empty lines."""
     path = Path(path)
-    for line in re.sub(r"&[ \t]*\n", " ", read_text(path)).splitlines():
-        line = re.sub(r"[#!].*", "", line).strip()
+    for line in lines_of_text(read_text(path)):
         include = re.match(r"\*include\s+(.*)", line, re.IGNORECASE)
         if include:
             file = path.parent / include[1].strip("\"'")
             if file not in (*parents, path):  # a ring
                 yield from lines_of(file, (*parents, path))
-        elif line:
+        else:
+            yield line
+
+
+def lines_of_text(text: str) -> Iterator[str]:
+    """Yield the lines of a text; no comments, no empty lines."""
+    for line in re.sub(r"&[ \t]*\n", " ", text).splitlines():
+        if line := re.sub(r"[#!].*", "", line).strip():
             yield line
 
 
 def read_blocks(path: str | Path) -> list[Block]:
     """Return the blocks of a file, with its includes, the parameters put in."""
+    return blocks_of(lines_of(path))
+
+
+def blocks_of(lines: Iterable[str]) -> list[Block]:
+    """Return the blocks of lines, the parameters put in."""
     parameters: dict[str, str] = {}
     blocks: list[Block] = []
-    for line in lines_of(path):
+    for line in lines:
         if line.startswith("*"):
             keyword, *name = line[1:].split(None, 1)
             blocks.append(Block(keyword.lower(), "".join(name)))

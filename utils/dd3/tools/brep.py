@@ -9,6 +9,8 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from dd3.errors import Problem
 
 # A location: elementary ones with their powers, multiplied from left to right.
@@ -118,6 +120,17 @@ class Topology:
             self.added.append("2  " + " ".join(f"{one} {power}" for one, power in reversed(chain)) + " 0\n")
         return self.numbers[chain]
 
+    def matrix(self, location: int) -> np.ndarray:
+        """Return the matrix of an elementary location (4, 4)."""
+        title = re.search(TITLE, self.head, re.MULTILINE)
+        assert title
+        lines = iter(self.head[title.end():].splitlines())
+        for number in range(1, location + 1):
+            rows = [next(lines).split() for _ in range(3)] if next(lines).split()[0] == "1" else []
+            if number == location:
+                return np.array([*rows, [0, 0, 0, 1]], float)
+        raise AssertionError(location)
+
     def ends(self, edge: int) -> list[int]:
         """Return the vertices of an edge, that of the least parameter first."""
         parts = self.records[edge].parts
@@ -147,6 +160,16 @@ class Topology:
             if words and words[0] == CURVE and len(words) == 5:
                 return float(words[3]), float(words[4])
         raise Problem("the faces cannot be closed: an edge without a curve")
+
+    def moved(self, vertex: int, location: int, point: np.ndarray) -> int:
+        """Return a new vertex: another one, of a face with a location, at a point in the coordinates of the file."""
+        old = self.records[vertex]
+        matrix = np.eye(4)
+        for one, power in self.chains[location]:
+            matrix = matrix @ np.linalg.matrix_power(self.matrix(one), power)
+        words = " ".join(repr(float(value)) for value in np.linalg.solve(matrix, [*point, 1.0])[:3])
+        self.records.append(Record("Ve", [old.geometry[0], words, *old.geometry[2:]], old.flags, old.parts))
+        return len(self.records) - 1
 
     def stretched(self, edge: int, low: float, high: float, far: Part) -> int:
         """Return a new edge: another one with other ends of its curves, and a vertex in place of that of its

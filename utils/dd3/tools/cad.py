@@ -6,7 +6,6 @@ is one patch of degree 2 x 2, so the surface has no gaps however the faces are t
 regular mesh. The divisions of a face grow until its distance from the CAD, measured at points between the nodes, is
 below the tolerance.
 """
-import argparse
 import os
 import re
 import sys
@@ -35,9 +34,10 @@ from dd3.tools.limits import limited
 from dd3.tools.nagata import groups
 from dd3.tools.parameters import filled, parameters_of
 from dd3.tools.report import REACH, named, up
+from dd3.tools.settings import CAD, ToolSettings
 from dd3.tools.surface import Surface, areas_at, from_nodes, grid, points_at
 
-SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
+SUFFIXES = CAD
 # Gmsh's order of the nodes of a quadrilateral of 9 nodes, as (v, u) rows.
 NINE = np.array([[0, 4, 1], [7, 8, 5], [3, 6, 2]])
 MOST_ROUNDS = 8
@@ -429,7 +429,7 @@ def mesh_within(gmsh: Any, path: Path, model: Model, tolerance: float, longest: 
         failed = mesh_once(gmsh, path, model, division)
         progress((rounds + 1) / MOST_ROUNDS)
         if not failed:
-            kink, bent = faults(model, rounds)
+            kink, bent = faults(gmsh, model, rounds)
             score = (len(bent), (model.distance > tolerance).sum(), (kink > KINK).any(axis=1).sum())
             if best is None or score < best[0]:
                 best = score, model.nodes, model.uv, model.labels, model.face, model.distance
@@ -463,15 +463,29 @@ def mesh_once(gmsh: Any, path: Path, model: Model, division: Division) -> list[A
     return failed
 
 
-def faults(model: Model, rounds: int) -> tuple[np.ndarray, set[int]]:
+def faults(gmsh: Any, model: Model, rounds: int) -> tuple[np.ndarray, set[int]]:
     """Return the largest kinks inside each face (face, 2), degrees, 0 after the first rounds; and the faces with
-    folds."""
+    folds, within a patch or between patches."""
     net = from_nodes(model.nodes)
     kink = worst_kinks(model, net) if rounds < KINK_ROUNDS else np.zeros((len(model.tags), 2))
-    return kink, set(model.face[folded(net)].tolist())
+    return kink, set(model.face[folded(net)].tolist()) | overlapping(gmsh, model)
 
 
-def read_file(gmsh: Any, path: Path, model: Model, options: argparse.Namespace) -> list[int]:
+def overlapping(gmsh: Any, model: Model) -> set[int]:
+    """Return the faces whose patches lie upon each other: some look to the other side of the CAD than most."""
+    found = set()
+    side = middle_normals(model)
+    for index, tag in enumerate(model.tags):
+        chosen = np.flatnonzero(model.face == index)
+        uv = model.uv[chosen, 1, 1]
+        chosen, uv = chosen[~np.isnan(uv).any(axis=1)], uv[~np.isnan(uv).any(axis=1)]
+        cosine = (np.reshape(gmsh.model.getNormal(tag, uv.ravel()), (-1, 3)) * side[chosen]).sum(axis=1)
+        if (cosine > 0).any() and (cosine < 0).any():
+            found.add(index)
+    return found
+
+
+def read_file(gmsh: Any, path: Path, model: Model, options: ToolSettings) -> list[int]:
     """Read a CAD file: set the parts and notes of the model, and return the faces that are chosen."""
     account = Account()
     load(gmsh, path)
@@ -487,7 +501,7 @@ def read_file(gmsh: Any, path: Path, model: Model, options: argparse.Namespace) 
     return faces.chosen(gmsh, path, choose(path, model.parts, options.part), options.faces, options.smooth)
 
 
-def read_closed(gmsh: Any, model: Model, options: argparse.Namespace) -> list[int]:
+def read_closed(gmsh: Any, model: Model, options: ToolSettings) -> list[int]:
     """Read a part whose openings were filled as it was read: set the parts and notes of the model, and return its
     faces."""
     options.closed.load(gmsh)
@@ -496,7 +510,7 @@ def read_closed(gmsh: Any, model: Model, options: argparse.Namespace) -> list[in
     return [tag for _, tag in gmsh.model.getEntities(2)]
 
 
-def read_cad(gmsh: Any, path: Path, options: argparse.Namespace, progress: Progress) -> Model:
+def read_cad(gmsh: Any, path: Path, options: ToolSettings, progress: Progress) -> Model:
     """Return the model of a CAD file, meshed within the tolerance."""
     model = Model()
     tags = read_closed(gmsh, model, options) if options.closed else read_file(gmsh, path, model, options)

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Die face: what goes on from the faces of a part to the border of the die. The part's own flange lies on the binder;
 where the part ends on a wall, the wall goes on to a shoulder that ends on the binder."""
-import argparse
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -16,6 +15,7 @@ from dd3.tools.own_flange import Trimmed
 from dd3.tools.plane import Side, box, straight
 from dd3.tools.rims import Rim, border_rims, find_rims, lengths, missing_height, patches, refuse_level, shoulder, wall
 from dd3.tools.set_blank import Blank, blank_of
+from dd3.tools.settings import ToolSettings
 from dd3.tools.surface import Surface, from_nodes, grid, points_at
 
 # Height over the thickness that the shortest ruled wall has, where one is needed.
@@ -70,7 +70,7 @@ class Face:
     lines: list[tuple[str, str]] = field(default_factory=list)
 
 
-def with_face(gmsh: Any, die: Trimmed, options: argparse.Namespace) -> Face:
+def with_face(gmsh: Any, die: Trimmed, options: ToolSettings) -> Face:
     """Return the die of a part's faces, whose normals point upwards, with shoulders and binder."""
     surface, joints = die.surface, find_joints(die.surface.net)
     walls, others = find_rims(surface, joints, die.border)
@@ -99,7 +99,7 @@ def with_face(gmsh: Any, die: Trimmed, options: argparse.Namespace) -> Face:
     return found
 
 
-def estimated(covered: np.ndarray, curves: list[np.ndarray], lines: list[tuple[str, str]], options: argparse.Namespace
+def estimated(covered: np.ndarray, curves: list[np.ndarray], lines: list[tuple[str, str]], options: ToolSettings
               ) -> Blank:
     """Return the blank that covers patches; where it is not estimated a box around curves. Enter what is to be said."""
     try:
@@ -112,7 +112,7 @@ def estimated(covered: np.ndarray, curves: list[np.ndarray], lines: list[tuple[s
     return Blank(np.array([low, [high[0], low[1]], high, [low[0], high[1]]]), False)
 
 
-def set_blank(found: Face, covered: np.ndarray, options: argparse.Namespace) -> None:
+def set_blank(found: Face, covered: np.ndarray, options: ToolSettings) -> None:
     """Set the blank that covers patches, and how far the die reaches, where `--flange` does not tell."""
     found.blank = estimated(covered, [reach.curve for reach in found.reaches], found.lines, options)
     if options.flange is None:
@@ -134,7 +134,7 @@ def refuse_mixed(walls: list[Rim], borders: list[Rim]) -> None:
                                + report.where(end), ": leave it out by --faces, or continue it in the CAD program")
 
 
-def at_borders(found: Face, die: Trimmed, rims: list[Rim], options: argparse.Namespace) -> None:
+def at_borders(found: Face, die: Trimmed, rims: list[Rim], options: ToolSettings) -> None:
     """Enter the rims at which the part's own flange begins, with the binder on which it lies."""
     points = [points_at(part.net, *grid(5)).reshape(-1, 3) for part in die.flanges]
     one = of_points(np.concatenate(points), options.tolerance)
@@ -159,7 +159,7 @@ def at_borders(found: Face, die: Trimmed, rims: list[Rim], options: argparse.Nam
                             + (f" within {1e3 * off:.2g} µm" if off > 0 else "")))
 
 
-def at_walls(found: Face, rims: list[Rim], options: argparse.Namespace) -> list[np.ndarray]:
+def at_walls(found: Face, rims: list[Rim], options: ToolSettings) -> list[np.ndarray]:
     """Enter the rims at which the part ends on walls; return the patches of walls and shoulders up to their binder."""
     radius = options.shoulder
     binder = found.binders[0] if found.binders else None
@@ -208,7 +208,7 @@ def check_kinks(surface: Surface, added: int) -> None:
         raise TooLong(longest * max(FEWER, SAFE * float(np.sqrt(KINK / angle[worst]))))
 
 
-def chosen(rims: list[Rim], lowest: float, options: argparse.Namespace) -> Binder:
+def chosen(rims: list[Rim], lowest: float, options: ToolSettings) -> Binder:
     """Return the binder for rims: the simplest one to which no wall goes on by more than a part of the depth, else that
     to which it is the shortest; as low as the walls allow."""
     points = np.concatenate([rim.points for rim in rims])
@@ -227,7 +227,7 @@ def chosen(rims: list[Rim], lowest: float, options: argparse.Namespace) -> Binde
     return min(tried)[2]
 
 
-def settled(rims: list[Rim], binder: Binder, options: argparse.Namespace) -> Binder:
+def settled(rims: list[Rim], binder: Binder, options: ToolSettings) -> Binder:
     """Return a binder at the least height to which all walls go on; a little more if these are needed."""
     for _ in range(SETTLE):
         binder = binder.raised(max(missing_height(rim, binder, options.shoulder) for rim in rims))

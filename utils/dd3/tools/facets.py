@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Facets to patches: reading, mending, parts, sides, offset."""
-import argparse
 from pathlib import Path
 from typing import Any
 
@@ -12,13 +11,14 @@ from dd3.tools.facet_files import Facets, read_facets
 from dd3.tools.joints import find_joints, kinks
 from dd3.tools.nagata import CREASE, estimate_normals, facet_areas, groups, unfolded_patches, unit
 from dd3.tools.report import REACH, plural, up, where
+from dd3.tools.settings import ToolSettings
 from dd3.tools.surface import Surface
 
 # Largest coordinate, mm; beyond it a damaged number is likelier than a tool.
 FARTHEST = 1e9
 
 
-def load(options: argparse.Namespace) -> Facets:
+def load(options: ToolSettings) -> Facets:
     """Return the mended facets of a file, of the parts wanted."""
     path = options.source
     mesh = read_facets(path)

@@ -12,14 +12,14 @@ INTERVAL = 0.2  # between looks at the clock, s
 
 
 @contextmanager
-def limited(seconds: float, message: str) -> Iterator[None]:
+def limited(seconds: float, message: str | Callable[[], str]) -> Iterator[None]:
     """End the program with exit code 2 and a message if the body takes longer, in processor time of the process, s."""
     done, stop = threading.Event(), time.process_time() + seconds
 
     def watch() -> None:
         while not done.wait(INTERVAL):
             if time.process_time() > stop:
-                print(f"error: {message}", file=sys.stderr, flush=True)
+                print(f"error: {message if isinstance(message, str) else message()}", file=sys.stderr, flush=True)
                 os._exit(2)  # the body holds the main thread
 
     watcher = threading.Thread(target=watch, daemon=True)

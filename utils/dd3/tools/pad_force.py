@@ -9,7 +9,6 @@ A leg without holder is wiped: bent by the moment M = sigma t^2/4 about the punc
 shoulder by M/l. The arm l between both, along the leg, is l^2 = (R + c)^2 + h^2 - R^2: R the sum of both radii and the
 thickness, c the clearance, h the height between their centres. It becomes small as the leg becomes vertical.
 """
-import argparse
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -19,6 +18,7 @@ import numpy as np
 from dd3.part.loops import Hole
 from dd3.tools.moved import rotation
 from dd3.tools.plane import inside
+from dd3.tools.settings import ToolSettings
 from dd3.tools.surface import Surface, points_at
 
 if TYPE_CHECKING:
@@ -46,13 +46,15 @@ class Pull:
 
 @dataclass
 class Pin:
-    """A hole of the floor in which a pin locates the sheet: words, place in plan (2), mm."""
+    """A hole of the floor in which a pin locates the sheet: words, place in plan (2), and the diameter of the pin, the
+    least size of the hole, mm."""
 
     words: str
     place: np.ndarray
+    diameter: float
 
 
-def needed(tools: "ToolSet", stress: Callable[[float], float], holder: float, options: argparse.Namespace,
+def needed(tools: "ToolSet", stress: Callable[[float], float], holder: float, options: ToolSettings,
            friction: float) -> float:
     """Return the force of the pad, N. stress: by the strain in plane strain, MPa; holder: its force, N."""
     t = options.thickness
@@ -67,7 +69,7 @@ def needed(tools: "ToolSet", stress: Callable[[float], float], holder: float, op
     return float(np.linalg.norm(sum(pull.along * (held if pull.held else wiped) for pull in tools.pulls)))
 
 
-def pins(holes: Sequence[Hole], floor: Surface, options: argparse.Namespace) -> list[Pin]:
+def pins(holes: Sequence[Hole], floor: Surface, options: ToolSettings) -> list[Pin]:
     """Return the holes of a level floor, in the coordinates of the placed part, in which pins locate it: the two
     farthest from each other."""
     around = points_at(floor.net, np.array([0.0, 1.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0, 1.0]))
@@ -81,7 +83,7 @@ def pins(holes: Sequence[Hole], floor: Surface, options: argparse.Namespace) -> 
         place = matrix @ hole.centre + np.array(options.move)
         over = any(inside(place[None, :2], corners)[0] for corners in around[..., :2])
         if abs(axis[2]) > UPRIGHT and over and abs(place[2] - level) < IN_FLOOR * options.thickness:
-            found.append(Pin(hole.words, place[:2]))
+            found.append(Pin(hole.words, place[:2], min(hole.size)))
     if len(found) < 2:
         return found
     apart = np.linalg.norm([[a.place - b.place for b in found] for a in found], axis=2)

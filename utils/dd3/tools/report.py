@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Report on a tool's surface: what it is made of, warnings, and errors that name the faces."""
-import argparse
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Protocol
@@ -8,6 +7,7 @@ from typing import Protocol
 import numpy as np
 
 from dd3.tools.joints import OPPOSITE, Joints, find_joints, folded, kinks, near_misses, normals_along, signs
+from dd3.tools.settings import ToolSettings
 from dd3.tools.surface import Surface, grid, points_at
 
 SMALLEST, LARGEST = 5.0, 1e4  # boxes beyond these have other units, mm
@@ -58,7 +58,7 @@ def place_of(joints: Joints, edge: int) -> str:
     return "x y z = " + where(joints.points[edge, 2])
 
 
-def judge(surface: Surface, options: argparse.Namespace, parts: int) -> tuple[Report, Joints]:
+def judge(surface: Surface, options: ToolSettings, parts: int) -> tuple[Report, Joints]:
     """Return the report on a surface, and its joints. `options` has kind, thickness, tolerance and sew."""
     report, joints = Report(), find_joints(surface.net)
     bodies = bodies_of(surface, joints)
@@ -105,7 +105,7 @@ def extreme(net: np.ndarray, axis: int, sign: int, place: np.ndarray) -> float:
     return values[(sign * values).argmax()]
 
 
-def say_edges(report: Report, surface: Surface, joints: Joints, options: argparse.Namespace) -> None:
+def say_edges(report: Report, surface: Surface, joints: Joints, options: ToolSettings) -> None:
     """Add the joined, free and multiple edges; errors for multiple ones and near misses."""
     report.add("edges", f"{len(joints.first)} joined, {len(joints.free)} free, {len(joints.multiple)} of more than two "
                f"patches, {plural(len(joints.pole), 'pole')}")

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Input file that draws a part with the tools that were made of it, and releases it."""
-import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -11,6 +10,7 @@ from dd3.tools import set_material
 from dd3.tools.beads import Beads
 from dd3.tools.pad_force import Pin
 from dd3.tools.set_blank import Blank
+from dd3.tools.settings import ToolSettings
 from dd3.tools.tool_set import ToolSet
 
 # Elements of the undivided blank, about; length of the smallest ones over the least radius of the tools, on which one
@@ -59,6 +59,7 @@ DECK = """# Draws {part} and releases it; tools by {command}
   control = punch
   trial = 1.0
   move = punch 0 0 -${{depth}}
+  keep = on
 
 *PHASE springback
   unload = on
@@ -94,6 +95,7 @@ PIN = """# Locating pin in the hole {words}, with which the blank has to be pier
 *BOUNDARY pin_{number}
   set = pin_{number}
   fix = {fixed}
+  pin = {diameter:.4g}
 
 """
 GRAVITY = """# The blank is laid on the die by its weight.
@@ -133,7 +135,7 @@ CLAMP = """*PHASE clamp
 """
 
 
-def deck(options: argparse.Namespace, tools: ToolSet, beads: Beads, command: str) -> str:
+def deck(options: ToolSettings, tools: ToolSet, beads: Beads, command: str) -> str:
     """Return the input file: tools, draw-beads, the command that made these."""
     low, high = tools.blank.box
     smallest = max(min(OF_RADIUS * tools.radius, (8 * SAG * options.thickness * tools.radius)**0.5),
@@ -174,7 +176,7 @@ def write_blank(folder: Path, blank: Blank, part: str) -> None:
                      f"outline of the blank of {part}")
 
 
-def said(options: argparse.Namespace, blank: Blank) -> str:
+def said(options: ToolSettings, blank: Blank) -> str:
     """Return size, area and weight of a blank in words."""
     density, of = set_material.density_of(options.material), "" if options.material else " of steel"
     if density is None:
@@ -196,11 +198,12 @@ def pinned(pins: Sequence[Pin]) -> str:
     if len(pins) > 1:
         apart = np.abs(pins[1].place - pins[0].place)
         fixed.append("y" if apart[0] > apart[1] else "x")
-    return "".join(PIN.format(words=pin.words, number=number, place=pair(pin.place), fixed=axes)
+    return "".join(PIN.format(words=pin.words, number=number, place=pair(pin.place), fixed=axes,
+                              diameter=pin.diameter)
                    for number, (pin, axes) in enumerate(zip(pins, fixed), 1))
 
 
-def sag(options: argparse.Namespace, blank: Blank) -> float | None:
+def sag(options: ToolSettings, blank: Blank) -> float | None:
     """Return the deflection of a blank under its weight on two supports at the ends of its longer side, mm, None
     without a density."""
     density = set_material.density_of(options.material)
@@ -210,7 +213,7 @@ def sag(options: argparse.Namespace, blank: Blank) -> float | None:
     return 5 * 12 * density * EARTH * span**4 / (384 * stiffness * options.thickness**2)
 
 
-def notes(options: argparse.Namespace, tools: ToolSet) -> list[tuple[str, str]]:
+def notes(options: ToolSettings, tools: ToolSet) -> list[tuple[str, str]]:
     """Return lines of the report on what holds the blank, and its weight."""
     lines = []
     if "pad" in tools.surfaces:

@@ -7,10 +7,16 @@ Planes, cylinders and all else of a lower degree are raised to degree 2 exactly,
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import comb
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from dd3.errors import Problem
+from dd3.tools.blocks import lines_of
+
+Patches = list[tuple[np.ndarray, np.ndarray]]  # points (v, u, 3) and weights (v, u)
 
 # Bernstein coefficients of the quadratic through the values at 0, 1/2, 1.
 FROM_NODES = np.array([[1, 0, 0], [-0.5, 2, -0.5], [0, 0, 1]])
@@ -54,14 +60,22 @@ def homogeneous(points: np.ndarray, weights: np.ndarray | None = None) -> np.nda
     return np.concatenate([points * weights[..., None], weights[..., None]], axis=-1)
 
 
-def bernstein(t: np.ndarray) -> np.ndarray:
-    """Return the quadratic Bernstein polynomials (..., 3) at t."""
+def bernstein(t: np.ndarray, degree: int = 2) -> np.ndarray:
+    """Return the Bernstein polynomials (..., degree + 1) at t."""
     t = np.asarray(t, float)
-    return np.stack([(1 - t)**2, 2 * t * (1 - t), t**2], axis=-1)
+    return np.stack([comb(degree, k) * t**k * (1 - t)**(degree - k) for k in range(degree + 1)], axis=-1)
+
+
+def points_on(points: np.ndarray, weights: np.ndarray, v: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """Return the points (..., len(v), len(u), 3) of patches of any degree at a grid of their parameters, given their
+    points (..., v, u, 3) and weights (..., v, u)."""
+    in_v, in_u = (bernstein(t, size - 1) for t, size in zip((v, u), weights.shape[-2:]))
+    above = np.einsum("ai,bj,...ijc->...abc", in_v, in_u, points * weights[..., None])
+    return np.asarray(above / np.einsum("ai,bj,...ij->...ab", in_v, in_u, weights)[..., None])
 
 
 def bernstein_slope(t: np.ndarray) -> np.ndarray:
-    """Return their derivatives."""
+    """Return the derivatives of the quadratic ones."""
     t = np.asarray(t, float)
     return np.stack([2 * t - 2, 2 - 4 * t, 2 * t], axis=-1)
 
@@ -176,9 +190,16 @@ def write_patch(file: Any, patch: np.ndarray) -> None:
         file.write(" ".join(f"{value:.12g}" for value in values) + "\n")
 
 
-def read_lines(lines: list[list[str]]) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return the patches of the split lines of a .bez file: points (v, u, 3) and weights (v, u); ValueError or
-    IndexError if they are not."""
+def read_patches(path: str | Path) -> Patches:
+    """Return the patches of a .bez file."""
+    try:
+        return patches_of([line.split() for line in lines_of(path)])
+    except (ValueError, IndexError):
+        raise Problem(f"{path}: not a file of Bézier patches") from None
+
+
+def patches_of(lines: list[list[str]]) -> Patches:
+    """Return the patches of the words of the lines of a .bez file; ValueError or IndexError if they are not."""
     patches, i = [], 0
     while i < len(lines):
         if lines[i][0].lower() != "patch":

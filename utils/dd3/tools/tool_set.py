@@ -6,7 +6,7 @@ tool is at the distance of the thickness and the clearance. The part's own flang
 die and under the holder; where the part ends on a wall, the wall of the die goes on to a shoulder and the binder. The
 highest point of the binder is at z = 0.
 """
-import argparse
+from copy import copy
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -24,6 +24,7 @@ from dd3.tools.offset import at_distance
 from dd3.tools.pad_force import Pin, Pull, pins
 from dd3.tools.rims import Rim, border_rims, find_rims, lengths, patches, wall
 from dd3.tools.set_blank import Blank
+from dd3.tools.settings import ToolSettings
 from dd3.tools.surface import Surface, from_nodes, turned
 
 # Defaults over the thickness: clearance, radius of the shoulder, margin of the blank; smaller ones for a drawing ratio
@@ -71,17 +72,21 @@ class ToolSet:
     lines: list[tuple[str, str]] = field(default_factory=list)
 
 
-def both_sides(gmsh: Any, options: argparse.Namespace, progress: Any
+def both_sides(gmsh: Any, options: ToolSettings, progress: Any
               ) -> tuple[Surface, Surface, dict[str, np.ndarray], list[str]]:
     """Return the surfaces of the punch and the die in the closed press, both with normals upwards, into the cavity, the
     largest distances of their faces from the CAD by the names of the tools, mm, and the roles of the faces."""
     gap = options.thickness + options.clearance
-    fine, least = argparse.Namespace(**vars(options)), options.radius
+    fine, least = copy(options), options.radius
     if options.sharp:  # an offset enlarges what the patches of the fillets are off the CAD
         fine.tolerance *= options.radius / (options.radius + gap)
         least *= JUST
     model = cad.read_cad(gmsh, options.source, fine, progress)
     refuse_left_out(model, options)
+    if upon := cad.overlapping(gmsh, model):
+        raise Problem(f"{options.source}: Gmsh makes no mesh of {report.named(model, np.array(sorted(upon)))} whose "
+                      "patches do not lie upon each other: divide or mend them in the CAD program, or choose faces by "
+                      "--faces")
     surface = cad.surface_of(model)
     matrix = rotation(options.rotate)
     up = matrix.T @ -DOWN
@@ -103,7 +108,7 @@ def both_sides(gmsh: Any, options: argparse.Namespace, progress: Any
     return found[0], found[1], distance, [options.roles.get(tag, "") for tag in model.origin]
 
 
-def refuse_left_out(model: cad.Model, options: argparse.Namespace) -> None:
+def refuse_left_out(model: cad.Model, options: ToolSettings) -> None:
     """Refuse a choice of faces, not made by the user, that leaves out a part of what is seen from the punch."""
     if options.faces or options.taken:
         return
@@ -118,9 +123,9 @@ def refuse_left_out(model: cad.Model, options: argparse.Namespace) -> None:
                       f"the shape of a part: --faces {both} takes them too, or choose those that one tool touches")
 
 
-def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
+def made(gmsh: Any, options: ToolSettings, progress: Any) -> ToolSet:
     """Return the tools of a part; where the patches along its rim are too long for the die face, it is meshed again."""
-    options = argparse.Namespace(**vars(options), longest=np.inf)
+    options = copy(options)
     for _ in range(MESHED):
         punch, die, distance, roles = both_sides(gmsh, options, progress)
         own = own_flange.labels_of(die, roles, shoulder=False)
@@ -165,6 +170,10 @@ def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
         others["die"] = face.surface.select(~floor), -top
         others["pad"] = part, -float(report.extent(part.net)[1][2])
         result.lines.append(("pad", "under the floor, as the part is formed on one side of it only"))
+    elif (free := free_stroke(face)) > options.thickness:
+        result.lines.append(("floor", f"not held: the rims of its walls are at two heights, so that one wall is formed "
+                             f"alone over {free:.3g} mm of the stroke, and may draw the sheet along the punch by up to "
+                             "that; compare the middle of the sheet after the draw, and give the blank that margin"))
     if not pad or any(reach.own for reach in face.reaches):
         holder = holder_of(gmsh, face, curves, options)
         closing = float(over - report.extent(holder.net)[0][2])
@@ -180,7 +189,7 @@ def made(gmsh: Any, options: argparse.Namespace, progress: Any) -> ToolSet:
 
 
 def without_holder(punch: Surface, die: Surface, distance: dict[str, np.ndarray], reason: str,
-                   options: argparse.Namespace) -> ToolSet:
+                   options: ToolSettings) -> ToolSet:
     """Return the tools of a part that gets no binder, both sides of it with strips as wide as the blank needs."""
     result = ToolSet(distance=distance, lines=[("", note) for note in punch.notes + die.notes])
     result.blank = estimated(die.net, [no_holder.outer_rim(die)[0]], result.lines, options)
@@ -218,7 +227,14 @@ def one_sided(face: Face, pulled: list[Pull]) -> bool:
     return bool(np.linalg.norm(sum(pull.along for pull in pulled)) > ONE_SIDED * total)
 
 
-def with_walls(part: own_flange.Trimmed, face: Face, options: argparse.Namespace
+def free_stroke(face: Face) -> float:
+    """Return the difference of the mean heights of the open rims of the die, mm: the stroke over which the wall of the
+    highest one is formed alone; 0 with closed rims, around which the sheet is held."""
+    heights = [float(reach.rim.points[:, 2].mean()) for reach in face.reaches if not reach.rim.closed]
+    return max(heights) - min(heights) if len(heights) == len(face.reaches) else 0.0
+
+
+def with_walls(part: own_flange.Trimmed, face: Face, options: ToolSettings
                ) -> tuple[Surface, list[tuple[Rim, np.ndarray]]]:
     """Return the punch, whose normals are upwards, with its walls continued to the height of the holder, and its
     normals downwards; and its rims, with the curves where it ends."""
@@ -245,7 +261,7 @@ def nearest(face: Face, rim: Rim) -> Reach:
     return min(face.reaches, key=lambda reach: cKDTree(reach.rim.points).query(rim.points)[0].mean())
 
 
-def holder_of(gmsh: Any, face: Face, curves: list[tuple[Rim, np.ndarray]], options: argparse.Namespace) -> Surface:
+def holder_of(gmsh: Any, face: Face, curves: list[tuple[Rim, np.ndarray]], options: ToolSettings) -> Surface:
     """Return the holder on the sheet on the binder, as wide as the die, and inwards up to the clearance between die
     and punch, normals downwards."""
     gap = options.thickness + options.clearance

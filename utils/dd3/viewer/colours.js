@@ -10,39 +10,31 @@ const valueText = (field, value) =>
       ? `${round(100 * value)} %`
       : `${round(value)} ${/\(([^()]*)\)$/.exec(field.label)?.[1] ?? ""}`.trim();
 
-// Round numbers between two ends: about `count` ticks, the ends among them.
-function roundRange(low, high, count = 8) {
-  if (!(high > low))
-    [low, high] = [low - Math.max(1e-6, 1e-3 * Math.abs(low)), low + Math.max(1e-6, 1e-3 * Math.abs(low))];
-  const rough = (high - low) / count,
-    power = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 2.5, 5, 10].find((factor) => factor * power >= 0.999 * rough) * power;
-  const first = Math.floor(low / step + 1e-6),
-    last = Math.ceil(high / step - 1e-6);
-  const ticks = Array.from({ length: last - first + 1 }, (_, i) => (first + i) * step);
-  return { low: ticks[0], high: ticks[ticks.length - 1], ticks, step };
+// Return the distance of ticks between two ends, as dd3.plot.scale, which finds the scales of the steps.
+function stepOf(low, high) {
+  const least = (high - low) / 8,
+    power = 10 ** Math.floor(Math.log10(least));
+  return [1, 2, 5, 10].find((factor) => factor * power >= 0.999 * least) * power;
 }
 
-// Return a tick with the digits that the step from tick to tick needs: one more for 2.5 than for 1, 2 and 5.
-function tickText(tick, step) {
-  const power = Math.floor(Math.log10(step) + 1e-9),
-    quarter = Math.abs(step / 10 ** power - 2.5) < 1e-6;
-  return tick.toFixed(Math.max(0, Math.min(9, quarter - power)));
+// Return a range with its ticks, the multiples of a step.
+function withTicks([low, high, step]) {
+  const first = Math.ceil(low / step - 1e-6),
+    last = Math.floor(high / step + 1e-6);
+  return { low, high, step, ticks: Array.from({ length: last - first + 1 }, (_, i) => (first + i) * step) };
 }
 
-// Return the range of the colours: its ends, its ticks and their distance; `values`: those of the step.
-function rangeOf(field, values) {
-  const factor = field.percent ? 100 : 1;
+// Return a tick with the digits that the step from tick to tick needs.
+const tickText = (tick, step) => tick.toFixed(Math.max(0, Math.min(9, -Math.floor(Math.log10(step) + 1e-9))));
+
+// Return the range of the colours: its ends, its ticks and their distance; `step`: the number of the step shown.
+function rangeOf(field, step) {
   if (field.names) return { low: -0.5, high: field.names.length - 0.5, ticks: field.names.map((_, i) => i), step: 1 };
-  let [low, high] = [field.low, field.high];
-  if (element("range").value === "step" && values) {
-    [low, high] = values.reduce(([a, b], value) => [Math.min(a, value), Math.max(b, value)], [Infinity, -Infinity]);
-  }
   if (element("range").value === "own") {
-    const [a, b] = ["low", "high"].map((name) => parseFloat(element(name).value));
-    if (b > a) return { ...roundRange(a, b), low: a, high: b };
+    const [low, high] = ["low", "high"].map((name) => parseFloat(element(name).value));
+    if (high > low) return withTicks([low, high, stepOf(low, high)]);
   }
-  return roundRange(factor * low, factor * high);
+  return withTicks((element("range").value === "step" && field.scales[step]) || field.scale);
 }
 
 // Return the colour at a part of the range, red, green and blue from 0 to 255; `maps`: those of the scene.
@@ -53,7 +45,7 @@ function colourOf(maps, field, shown, part) {
   }
   let value = shown.low + part * (shown.high - shown.low);
   if (element("bands").checked) value = Math.min((Math.floor(value / shown.step) + 0.5) * shown.step, shown.high);
-  const signed = shown.low < -1e-9 * shown.high && shown.high > 0,
+  const signed = shown.low < 0 && shown.high > 0,
     largest = Math.max(-shown.low, shown.high);
   const map = maps[signed ? "diverging" : element("map").value];
   const at =

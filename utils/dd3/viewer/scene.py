@@ -5,7 +5,6 @@ The scripts of the page read the description of a scene. Its steps are those of 
 the free shape once more, moved to the best fit with the drawn one.
 """
 
-import argparse
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
@@ -14,6 +13,7 @@ import numpy as np
 
 from dd3 import forming_limit, springback, verdict
 from dd3.fields import COMPONENTS, text_of
+from dd3.plot import scale
 from dd3.plot import sheet as pictures
 from dd3.plot.beads import draped
 from dd3.sheet import AXES, Sheet
@@ -22,7 +22,7 @@ from dd3.viewer.skin import Skin, skin_of
 
 TOOL_POINTS = 20000  # of a tool, about
 MOST = 40_000_000  # values of all fields at all steps; of more, steps between the ends of phases are left out
-MAPS = {"viridis": "viridis", "cividis": "cividis", "diverging": "RdBu_r"}
+MAPS = {"viridis": scale.SEQUENTIAL, "cividis": "cividis", "diverging": scale.DIVERGING}
 COLOURS = 64  # of a map
 WHOLE_COLOURS = ("#d0d4d8", "#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442")
 STATUS = ("no contact", "stick", "slip")
@@ -126,9 +126,10 @@ class Scene:
             for part in parts:
                 field = f"{name}:{part}" if part else name
                 values = [self.values(picture, field, at_cells) for picture in self.pictures]
+                kind = self.kind(name, data)
                 yield {"name": field, "label": self.sheet.component(0, field, at_cells)[1],
-                       "help": text_of(data.attrs.get("description", "")), "elements": at_cells,
-                       **self.kind(name, data), **self.written(values, np.issubdtype(data.dtype, np.integer))}
+                       "help": text_of(data.attrs.get("description", "")), "elements": at_cells, **kind,
+                       **self.written(values, np.issubdtype(data.dtype, np.integer), kind["percent"])}
 
     def values(self, picture: Picture, field: str, at_cells: bool) -> np.ndarray | None:
         """Return a field at the nodes or elements of a skin; None for elements of another mesh."""
@@ -148,15 +149,18 @@ class Scene:
             return named(["none", *(tool["name"] for tool in self.run.job["tools"])])
         if np.issubdtype(data.dtype, np.integer):
             return named(list(map(str, range(int(data[:].max()) + 1))))
-        return {"percent": name == "thinning" or "strain" in name}
+        return {"percent": scale.in_per_cent(name)}
 
-    def written(self, values: Sequence[np.ndarray | None], whole: bool) -> dict[str, Any]:
-        """Return arrays of a field, one for each step of the view, and the range of all of them."""
-        there = [part for part in values if part is not None]
+    def written(self, values: Sequence[np.ndarray | None], whole: bool, percent: bool = False) -> dict[str, Any]:
+        """Return arrays of a field, one for each step of the view, its scale at each of them, and that of all."""
+        factor = 100.0 if percent else 1.0
+        ends = [None if part is None else tuple(factor * float(end(part)) for end in (np.nanmin, np.nanmax))
+                for part in values]
+        lows, highs = zip(*(pair for pair in ends if pair))
         add = self.arrays.add_whole if whole else self.arrays.add
         return {"values": [None if part is None else add(part) for part in values],
-                "low": float(min(np.nanmin(part) for part in there)),
-                "high": float(max(np.nanmax(part) for part in there))}
+                "scale": scale.round_scale(min(lows), max(highs)),
+                "scales": [pair and scale.round_scale(*pair) for pair in ends]}
 
     def limit_fields(self) -> Iterator[dict[str, Any]]:
         """Return the strains and zones of the forming limit diagram, and the zones of thinning and thickening, at nodes
@@ -167,7 +171,7 @@ class Scene:
             for role in ("minor", "major"):
                 yield {"name": f"limit_{role}", "label": f"{role} strain, middle, as in the forming limit diagram",
                        "help": "", "elements": at_cells, "percent": True, "role": role,
-                       **self.written([None if part is None else getattr(part, role) for part in parts], False)}
+                       **self.written([None if part is None else getattr(part, role) for part in parts], False, True)}
             if self.limits.curve:
                 curve, margin = self.limits.curve, self.margin
                 zones = [None if part is None else curve.zones(part.major, part.minor, margin) for part in parts]
@@ -216,10 +220,10 @@ class Scene:
 
     def tools(self) -> Iterator[dict[str, Any]]:
         """Return the surfaces of the tools whose files are there."""
-        options = argparse.Namespace(hide=[], tool=[])
         numbers = {tool["name"]: i + 1 for i, tool in enumerate(self.run.job["tools"])}
-        for name, patches in pictures.find_tools(self.run, options).items():
-            skin, edges = pictures.tool_surface(patches, pictures.Placement(np.eye(3), np.zeros(3)), TOOL_POINTS)
+        for name, patches in pictures.find_tools(self.run).items():
+            skin = pictures.tool_surface(patches, pictures.Placement(np.eye(3), np.zeros(3)), TOOL_POINTS)
+            edges = pictures.sharp_edges(skin)
             quads = skin.faces.reshape(-1, 5)[:, 1:]
             add = self.arrays.add_whole
             yield {"name": name, "number": numbers.get(name, 0),

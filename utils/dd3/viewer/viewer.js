@@ -95,7 +95,7 @@ class Viewer {
     const touching = element("pressure").checked && touched ? await read(touched.values[state.step]) : null;
     const drawn = step.free && element("drawn").checked ? positions(await readAll(scene.drawn), mesh.places) : null;
     if (turn !== this.turns) return;
-    Object.assign(state, { mesh, points, values, shown: rangeOf(field, values) });
+    Object.assign(state, { mesh, points, values, shown: rangeOf(field, state.step) });
     moveMesh(mesh, points);
     this.colour(field);
     this.place(drawn);

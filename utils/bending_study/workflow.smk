@@ -1,11 +1,11 @@
 # Workflow of the bending study: a run for every row of the table of cases, a table of results, and its figures.
-# `dd3 study run` calls it; docs/reports/bending_study.md explains how it runs on a cluster. A run that stops before its
-# end (exit code 3) is a result: `dd3 study case` records it and succeeds.
+# `python3 -m bending_study run` calls it; docs/reports/bending_study.md explains how it runs on a cluster. A run that
+# stops before its end (exit code 3) is a result: `python3 -m bending_study case` records it and succeeds.
 import csv
 import sys
 from pathlib import Path
 
-STUDY = f"{sys.executable} -m dd3 study"
+STUDY = f"{sys.executable} -m bending_study"
 PROGRAM = config["program"]
 TABLE = Path(config["cases"])
 WANTED = str(config.get("sets") or "").split()

@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Rewrite the tables of docs/reports/bending_study.md from the results of the bending study.
 
-    dd3 study report docs/reports/bending_study.md
+    python3 -m bending_study report docs/reports/bending_study.md
 """
 
 from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 
+from bending_study.runs import FIRST, Run, differences
 from dd3.command import new_parser
 from dd3.errors import Problem
 from dd3.pages import put_table, table
 from dd3.run import read_job
-from dd3.study.runs import FIRST, Run, differences
 from dd3.tables import Row, read_table, totals
 
 PENALTIES = ["1e2", "1e3", "1e4", "1e5"]
@@ -47,7 +47,8 @@ class Rows(dict[str, Row]):
     """Rows of the table of results by their cases."""
 
     def __missing__(self, case: str) -> Row:
-        raise Problem(f"results.csv: the case {case} is missing; `dd3 study run` runs the cases that are not done")
+        raise Problem(f"results.csv: the case {case} is missing; `python3 -m bending_study run` runs the cases that "
+                      "are not done")
 
 
 class Results:
@@ -256,7 +257,7 @@ def write(work: Path, document: Path) -> None:
 
 def main(words: Sequence[str] | None = None) -> None:
     """Rewrite the tables of the document of the command line."""
-    parser = new_parser("study report", __doc__)
+    parser = new_parser("report", __doc__, "python3 -m bending_study")
     parser.add_argument("document", type=Path, help="document with places for the tables")
     parser.add_argument("--work", type=Path, default=Path("bending_study.out"), help="folder of all results")
     options = parser.parse_args(words)

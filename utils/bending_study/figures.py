@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draw the figures of the bending study from its results, numbered like the paper's.
 
-    dd3 study figures --work bending_study.out --output docs/images
+    python3 -m bending_study figures --work bending_study.out --output docs/images
 
 study_fig3, 6, 8, 9: travel reached, by penalty and mesh (3_8: with at most 8 iterations); study_fig4: the sheet at
 2.0 mm with the status of its contact candidates; study_fig7: B of the node that controls the limit on the contact
@@ -13,11 +13,11 @@ from pathlib import Path
 
 import numpy as np
 
+from bending_study.tables import END, MESHES, PENALTIES, PERTURBED
 from dd3.command import new_parser
 from dd3.plot.figures import new_figure, save, tidy
 from dd3.programs import made_folder
 from dd3.sheet import Sheet
-from dd3.study.tables import END, MESHES, PENALTIES, PERTURBED
 from dd3.tables import Row, force_limits, read_table
 
 # Figure: endings of its cases' names and their meaning.
@@ -132,7 +132,7 @@ def sheets(work: Path, results: Mapping[str, Row], path: Path) -> bool:
 
 def main(words: Sequence[str] | None = None) -> None:
     """Draw the figures whose cases were run."""
-    parser = new_parser("study figures", __doc__)
+    parser = new_parser("figures", __doc__, "python3 -m bending_study")
     parser.add_argument("--work", type=Path, default=Path("bending_study.out"), help="folder of the study's results")
     parser.add_argument("--output", type=Path, help="folder of the pictures (default: the same)")
     options = parser.parse_args(words)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Cases of the bending study: run one, or gather the table of all; the steps of workflow.smk.
 
-    dd3 study command b-1e3       print the command of a case
-    dd3 study case b-1e3          run a case, unless it is done, in bending_study.out/b-1e3/
-    dd3 study table               gather the finished cases in bending_study.out/results.csv
+    python3 -m bending_study command b-1e3       print the command of a case
+    python3 -m bending_study case b-1e3          run a case, unless it is done, in bending_study.out/b-1e3/
+    python3 -m bending_study table               gather the finished cases in bending_study.out/results.csv
 
 A case is a row of bending_study/cases.csv of the examples, or of --cases. Its columns other than `case` and `set` are
 parameters of study.dat in the same folder; an empty cell keeps the default of study.dat. A case is done when its folder
@@ -20,10 +20,10 @@ import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from bending_study.runs import NOTE, punch_curve, run_once
 from dd3 import places, programs
 from dd3.command import new_parser
 from dd3.errors import Problem
-from dd3.study.runs import NOTE, punch_curve, run_once
 from dd3.tables import Row, force_limits, interpolate, limiters, read_table, totals
 
 DECK, OPTIONS = "study.dat", ("--threads", "1")
@@ -39,7 +39,7 @@ LENGTH, WIDTH, ELEMENTS = 175.0, 35.0, 10
 
 def arguments(step: str, words: Sequence[str]) -> argparse.Namespace:
     """Return the options of a step."""
-    parser = new_parser(f"study {step}", __doc__)
+    parser = new_parser(step, __doc__, "python3 -m bending_study")
     if step == "table":
         parser.add_argument("--only", nargs="+", metavar="CASE", help="leave out the others")
     else:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Run every case of the bending study of docs/reports/bending_study.md, gather the table and draw the figures.
 
-    dd3 study run                        all cases of input_files/bending_study/cases.csv
-    dd3 study run --quick                the four cases of quick.csv, to 5 mm, into bending_study_quick.out
-    dd3 study run --sets "fig3 fig6"     selected sets of cases
-    dd3 study run -- --profile utils/dd3/study/slurm        options of snakemake after --, such as --dry-run
+    python3 -m bending_study run                      all cases of input_files/bending_study/cases.csv
+    python3 -m bending_study run --quick              the four cases of quick.csv, to 5 mm, into bending_study_quick.out
+    python3 -m bending_study run --sets "fig3 fig6"   selected sets of cases
+    python3 -m bending_study run -- --profile utils/dd3/study/slurm   options of snakemake after --
 
 All cores are used. After an interruption the same command continues;
 finished cases are not repeated. `pip install "dd3imp[study]"` installs snakemake, the workflow engine.
@@ -18,11 +18,11 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from bending_study.runs import NOTE
 from dd3 import places
 from dd3.command import new_parser
 from dd3.errors import Problem, missing
 from dd3.programs import add_program, find_program, made_folder
-from dd3.study.runs import NOTE
 
 
 def cores(text: str) -> str:
@@ -34,7 +34,7 @@ def cores(text: str) -> str:
 
 def main(words: Sequence[str] | None = None) -> None:
     """Run the workflow of the command line."""
-    parser = new_parser("study run", __doc__)
+    parser = new_parser("run", __doc__, "python3 -m bending_study")
     parser.add_argument("--quick", action="store_true", help="the cases of quick.csv, without figures")
     parser.add_argument("--sets", default="", help="sets of cases, separated by blanks (default: all)")
     parser.add_argument("--cores", type=cores, default="all", help="runs at a time (default: the number of cores)")

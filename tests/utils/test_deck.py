@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Input files as objects: read, changed, written; what is not changed stays as it is."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from helpers import ROOT
+
+import dd3
+from dd3 import deck
+
+TEXT = """# A strip
+*TITLE
+  strip, 2 mm    # a comment
+*PARAMETER
+  depth = 40     # mm
+  tools = .
+
+! the sheet
+*BLANK strip
+  divisions = 4 2 1
+  grading_x = 0 0.2 &   # from the left
+     0.5 0.7 1
+  material=Steel
+*PHASE draw
+  move = punch 0 0 -${depth}
+  move = holder 0 0 -1
+*PHASE Free
+  unload = on
+*TOOL punch
+  patches = "${tools}/punch.bez"
+"""
+
+
+def test_unchanged():
+    """Check that a file that is read and written is the same, each byte of it."""
+    for path in sorted((ROOT / "input_files").glob("*/*.dat")):
+        job = deck.read(path)
+        assert str(job).encode("utf-8", "surrogateescape") == path.read_bytes() and not job.changed, path
+    data = TEXT.replace("\n", "\r\n").encode() + b"# \xfcber"
+    (path := Path("a.dat")).write_bytes(data)
+    deck.read(path).write("b.dat")
+    assert Path("b.dat").read_bytes() == data + b"\n"
+
+
+def test_values(tmp_path):
+    """Check that values are read and changed in place."""
+    (tmp_path / "a.dat").write_text(TEXT)
+    job = deck.read("a.dat")
+    assert [block.keyword for block in job] == ["TITLE", "PARAMETER", "BLANK", "PHASE", "PHASE", "TOOL"]
+    assert job["title"].text == "strip, 2 mm" and job["blank"]["Material"] == "Steel" and "LIMITS" not in job
+    assert job["BLANK"].numbers("grading_x") == [0, 0.2, 0.5, 0.7, 1] and list(job["PHASE", "free"]) == ["unload"]
+    assert job["PHASE", "draw"].all("move") == ["punch 0 0 -${depth}", "holder 0 0 -1"] and not job.changed
+    job.parameters["depth"] = 37.5
+    job["BLANK"]["grading_x"] = np.linspace(0, 1, 5)
+    job["BLANK"]["skew"] = 0.1
+    job["PHASE", "draw"].set_all("move", ["punch 0 0 -1"])
+    job["PHASE", "free"]["unload"] = False
+    job["TITLE"].text = "shorter"
+    assert job.blocks.index(job["TOOL"]) == 5
+    job.add("MATERIAL", "steel", young=2.1e5, poisson=0.3)
+    job.remove(job["TOOL"])
+    job.add("TOOL", "die", patches="die.bez")
+    job.write("b.dat")
+    assert (tmp_path / "b.dat").read_text() == """# A strip
+*TITLE
+  shorter
+*PARAMETER
+  depth = 37.5   # mm
+  tools = .
+
+! the sheet
+*BLANK strip
+  divisions = 4 2 1
+  grading_x = 0 0.25 0.5 0.75 1 # from the left
+  material=Steel
+  skew = 0.1
+*PHASE draw
+  move = punch 0 0 -1
+*PHASE Free
+  unload = off
+*MATERIAL steel
+  young = 210000
+  poisson = 0.3
+
+*TOOL die
+  patches = die.bez
+""", (tmp_path / "b.dat").read_text()
+    assert job.path.name == "b.dat" and not job.changed
+
+
+def test_errors(tmp_path):
+    """Check that errors name file and line, and say what there is."""
+    (tmp_path / "a.dat").write_text(TEXT)
+    (tmp_path / "punch.bez").write_text("")
+    job = deck.read("a.dat")
+    for act, said in ((lambda: job["MATERIAL"], "a.dat: error: no block *MATERIAL; there are: *TITLE, *PARAMETER"),
+                      (lambda: job["PHASE"], "a.dat:17: error: 2 blocks *PHASE; give a name: draw, Free"),
+                      (lambda: job["PHASE", "x"], "no block *PHASE x"),
+                      (lambda: job["BLANK"]["size"], "a.dat:9: error: no key 'size' in *BLANK strip; there are: div"),
+                      (lambda: job["PHASE", "draw"]["move"], "2 values of 'move' in *PHASE; take all('move')"),
+                      (lambda: job["PHASE", "draw"].update(move="x"), "a.dat:16: error: 'move' is given 2 times"),
+                      (lambda: job["BLANK"].numbers("material"), "a.dat:13: error: 'Steel' of 'material'"),
+                      (lambda: deck.Deck("x = 1\n"), "input:1: error: 'x = 1' belongs to no block"),
+                      (lambda: deck.read("no.dat"), "no.dat: No such file")):
+        with pytest.raises(dd3.Problem) as problem:
+            act()
+        assert said in str(problem.value), problem.value
+    assert job["BLANK"].get("size") is None
+    (tmp_path / "other").mkdir()
+    with pytest.raises(dd3.Problem, match=r"a.dat:20: error: './punch.bez' is relative to this file"):
+        job.write("other/a.dat")
+    (tmp_path / "other" / "punch.bez").write_text("")
+    job.write("other/a.dat")
