@@ -101,8 +101,6 @@ def main(words: Sequence[str] | None = None) -> None:
     parser.add_argument("--direction", type=float, default=0.0, metavar="DEGREES",
                         help="of the major strain to the rolling direction (0)")
     parser.add_argument("--rate-sensitivity", type=float, default=0.0, metavar="M", help="exponent m (0)")
-    parser.add_argument("--prestrain", type=float, nargs=2, default=(0.0, 0.0), metavar=("MINOR", "MAJOR"),
-                        help="strains before the proportional paths, along the same axes")
     parser.add_argument("--measured", type=Path, metavar="FILE", help="table with measured limits to compare with")
     parser.add_argument("--engineering", action="store_true", help="the strains of --measured are engineering strains")
     parser.add_argument("--output", type=Path, default=Path("flc.csv"), help="table to write (flc.csv)")
@@ -112,9 +110,8 @@ def main(words: Sequence[str] | None = None) -> None:
     point = options.calibrate or (options.calibrate_plane_strain and (0.0, options.calibrate_plane_strain))
     if point and not (point[1] > 0 and LEFT <= point[0] / point[1] <= RIGHT):
         parser.error(f"a measured limit has a positive major strain, minor/major from {LEFT:g} to {RIGHT:g}")
-    if options.points < 3 or not 0 <= options.rate_sensitivity < 1 or options.prestrain[1] < 0:
-        parser.error("--points takes at least 3, --rate-sensitivity 0 to below 1, "
-                     "--prestrain a major strain not below 0")
+    if options.points < 3 or not 0 <= options.rate_sensitivity < 1:
+        parser.error("--points takes at least 3, --rate-sensitivity 0 to below 1")
     file = found(options.material)
     sheet = Sheet(Material(file=file, name=options.name), options.f0 or 1.0, options.direction,
                   options.rate_sensitivity)
@@ -126,10 +123,9 @@ def main(words: Sequence[str] | None = None) -> None:
         source = f"calibrated by the limit {point[1]:g} at the minor strain {point[0]:g}"
     rate = f", m = {options.rate_sensitivity:g}" if options.rate_sensitivity else ""
     turned = f", major strain at {options.direction:g} degrees" if options.direction else ""
-    before = "" if not any(options.prestrain) else f", prestrain {options.prestrain[0]:g} {options.prestrain[1]:g}"
     label = (f"{options.name or options.material.stem}: Marciniak-Kuczynski, f0 = {sheet.ratio:.5g} ({source})"
-             f"{rate}{turned}{before}")
-    limits = sheet.curve(ratios_of(options.points), (options.prestrain[1], options.prestrain[0]))
+             f"{rate}{turned}")
+    limits = sheet.curve(ratios_of(options.points))
     curve, kept = curve_of(limits, label)
     write(options.output, label, kept)
     figure, axes = new_figure((7, 5))
@@ -138,7 +134,7 @@ def main(words: Sequence[str] | None = None) -> None:
     save(figure, picture, 130)
     left_out = [f"left out: {len(limits) - len(kept)} of {len(limits)} paths, without localisation up to the strain "
                 f"{LARGEST:g} or with a minor strain below that of the path before"] if len(kept) < len(limits) else []
-    said = compared(sheet, *measured) if measured is not None and not any(options.prestrain) else []
+    said = compared(sheet, *measured) if measured is not None else []
     print(options.output, picture, label, f"limit: the groove thins {RATIO:g} times as fast as the sheet; plane strain "
-          f"{float(curve.limit(0.0)):.4g}", *said, *left_out,
-          *(f"left out: {item}" for item in account.left_out()), sep="\n")
+          f"{float(curve.limit(0.0)):.4g}", *said, *left_out, *(f"left out: {item}" for item in account.left_out()),
+          sep="\n")

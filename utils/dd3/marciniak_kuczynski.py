@@ -14,9 +14,10 @@ The thickness strain of the groove is prescribed in steps, so that the limit is 
 the path and the thickness strain of the sheet are found by Newton's method with the consistent tangents. Strain
 increments and rotation of the material axes of a zone are those of the polar decomposition of its step, as in the
 program. The limit strain is reached when the groove thins RATIO times as fast as the sheet; the limit of a path is the
-least over the angles of the groove.
+least over the angles of the groove. The error is of first order in the step where the path of the groove bends.
 
-With a rate sensitivity m the stress of the groove is multiplied by (dp_b/dp_a)^m, p the equivalent plastic strain.
+With a rate sensitivity m the stress of the groove is multiplied by (dp_b/dp_a)^m, p the equivalent plastic strain,
+from the step after the yield point.
 """
 
 import math
@@ -85,6 +86,7 @@ class Zone:
         self.tangent = axes.T @ point.tangent[IN_PLANE] @ axes
         self.plastic = float(point.state[0] - self.committed[1][0])
         self.work = float(point.stress[PLANE] @ strain)
+        self.flows = self.plastic > 0 and self.committed[1][0] > 0  # not in the step of the yield point
         return True
 
     def accept(self) -> None:
@@ -112,25 +114,9 @@ def inverse_of(matrix: np.ndarray) -> np.ndarray:
 
 
 class Path(NamedTuple):
-    """A strain path: minor over major strain, after a prestrain (major, minor)."""
+    """A proportional strain path: minor over major strain. Its length is the major strain."""
 
     ratio: float
-    prestrain: tuple[float, float] = (0.0, 0.0)
-
-    @property
-    def bent(self) -> bool:
-        """Tell whether there is a prestrain."""
-        return any(self.prestrain)
-
-    def at(self, length: float) -> tuple[float, float, float, float]:
-        """Return the strains along both axes after a length, and their derivatives: the prestrain first; length: its
-        larger strain, then the major strain beyond it."""
-        first, second = self.prestrain
-        size = max(abs(first), abs(second))
-        if size > 0 and length < size:
-            return first * length / size, second * length / size, first / size, second / size
-        beyond = length - size
-        return first + beyond, second + self.ratio * beyond, 1.0, self.ratio
 
 
 class Limit(NamedTuple):
@@ -157,12 +143,11 @@ class Groove:
         """Find the unknowns for a thickness strain of the groove; return False where Newton's method fails."""
         x = guess.copy()
         for _ in range(NEWTON):
-            first, second, by_first, by_second = self.path.at(x[2])
-            gradient = np.array([[math.exp(first), 0.0], [0.0, math.exp(second)]])
+            gradient = np.array([[math.exp(x[2]), 0.0], [0.0, math.exp(self.path.ratio * x[2])]])
             if not (self.a.attempt(gradient, x[3])
                     and self.b.attempt(gradient + x[:2, None] * self.normal, thickness)):
                 return False
-            residual, matrix = self.balance(gradient, np.array([[by_first], [by_second]]) * gradient)
+            residual, matrix = self.balance(gradient, np.array([[1.0], [self.path.ratio]]) * gradient)
             if np.abs(residual).max() <= SOLVED * max(np.abs(self.b.stress).max(), 1e-300):
                 self.trial = x
                 return True
@@ -178,7 +163,7 @@ class Groove:
         n = self.normal / gradient.diagonal()
         turning = -n * along.diagonal() / gradient.diagonal()
         thick_a, thick_b = math.exp(a.trial[1]), self.sheet.ratio * math.exp(b.trial[1])
-        faster = rate > 0 and a.plastic > 0 and b.plastic > 0
+        faster = rate > 0 and a.flows and b.flows
         if faster:
             thick_b *= (b.plastic / a.plastic) ** rate
         difference = thick_b * b.stress - thick_a * a.stress
@@ -202,12 +187,12 @@ class Groove:
     def limit(self, ceiling: float, largest: float) -> float:
         """Return the length of the path at the limit, infinity if it is above a ceiling; largest: step."""
         step, slowness, middle = FIRST, 1.0, 0.0
-        rates = np.array([0.0, 0.0, 1 / sum(self.path.at(0.0)[2:]), -1.0])
+        rates = np.array([0.0, 0.0, 1 / (1 + self.path.ratio), -1.0])
         while self.found[2] < ceiling:
             before, thickness = self.found, self.b.thickness
             solved = self.solve(before + step * rates, thickness - step)
             # A sheet that thins faster than the groove is the other branch beyond a bifurcation.
-            if not solved or (not self.path.bent and before[3] - self.trial[3] >= step):
+            if not solved or before[3] - self.trial[3] >= step:
                 step /= 4
                 if step > SMALLEST:
                     continue
@@ -268,18 +253,17 @@ class Sheet:
                 if length < least:
                     best, least = angle, length
                     break
-        first, second, *_ = path.at(least)
-        turned = math.degrees(math.atan2(math.sin(math.radians(best)) * math.exp(-second),
-                                         math.cos(math.radians(best)) * math.exp(-first)))
-        return Limit(first, second, abs(best) if self.symmetric else best, abs(turned) if self.symmetric else turned)
+        minor = path.ratio * least
+        turned = math.degrees(math.atan2(math.sin(math.radians(best)) * math.exp(-minor),
+                                         math.cos(math.radians(best)) * math.exp(-least)))
+        return Limit(least, minor, abs(best) if self.symmetric else best, abs(turned) if self.symmetric else turned)
 
-    def curve(self, ratios: Sequence[float] | np.ndarray, prestrain: tuple[float, float] = (0.0, 0.0)
-              ) -> list[Limit | None]:
+    def curve(self, ratios: Sequence[float] | np.ndarray) -> list[Limit | None]:
         """Return the limits of paths, by their ratio of minor and major strain."""
         found: list[Limit | None] = []
         for ratio in ratios:
             last = found[-1] if found else None
-            found.append(self.limit(Path(float(ratio), prestrain), last.angle if last else 0.0))
+            found.append(self.limit(Path(float(ratio)), last.angle if last else 0.0))
         return found
 
 
