@@ -14,8 +14,8 @@ install(PROGRAMS utils/launcher.py DESTINATION "${data}/python" COMPONENT utilit
 install(DIRECTORY utils/dd3 DESTINATION "${data}/python" COMPONENT utilities PATTERN "__pycache__" EXCLUDE)
 install(DIRECTORY input_files DESTINATION "${data}" USE_SOURCE_PERMISSIONS COMPONENT examples PATTERN "*.out" EXCLUDE
   PATTERN "__pycache__" EXCLUDE)
-install(FILES README.md CHANGELOG.md CITATION.cff CONTRIBUTING.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}"
-  COMPONENT documents)
+install(FILES README.md CHANGELOG.md CITATION.cff CODE_OF_CONDUCT.md CONTRIBUTING.md LICENSE SECURITY.md
+  DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documents)
 install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documents)
 
 # Install a symbolic link of a component at `place` to `target`, both relative to the prefix.

@@ -23,7 +23,7 @@ def call(words, folder):
 
 def missing(folder):
     """Return the links of the installed documents that lead nowhere."""
-    pages = [folder / "README.md", *(folder / "docs").rglob("*.md")]
+    pages = [*folder.glob("*.md"), *(folder / "docs").rglob("*.md")]
     return [f"{page}: {link}" for page in pages for link in LINK.findall(page.read_text(encoding="utf-8"))
             if not (page.parent / link).exists()]
 
