@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Measured tables: quotes, separators, decimal commas, headings with units, what is left out, and damaged files."""
 
+import logging
+
 import numpy as np
 import pytest
 from helpers import call
@@ -42,12 +44,13 @@ def test_tables(tmp_path, name):
     assert np.allclose(read_curve(str(path), False).T, CURVE, rtol=1e-9), name
 
 
-def test_left_out(tmp_path, capsys):
+def test_left_out(tmp_path, caplog):
     """Check that rows above the numbers, other columns and unknown units are named with their lines."""
     path = tmp_path / "curve.csv"
     path.write_text("Specimen;7\n\ntime (s);Strain;Stress (bar);temperature\n" + rows("1;{};{};20"))
-    read_curve(str(path), False)
-    said = capsys.readouterr().out
+    with caplog.at_level(logging.INFO, "dd3"):
+        read_curve(str(path), False)
+    said = caplog.text
     for text in ("curve.csv:1: row 'Specimen 7'", "curve.csv:3: column 1 'time (s)'", "curve.csv:3: column 4 'temperature'",
                  "curve.csv:3: unit 'bar' of the stress"):
         assert f"left out: {tmp_path}/{text}" in said, said
