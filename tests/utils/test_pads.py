@@ -57,6 +57,9 @@ def test_angle(parts, tmp_path, program):
     assert text.count("*BOUNDARY pin_") == 2 and "fix = x y\n" in text and "fix = y\n" in text, text
     assert text.count("\n  pin = 6\n") == 2 and "  keep = on\n" in text, text
     assert "gravity" not in text and "\n  density = " in text, text
+    # The blank goes on beyond the open end of the floor, at y = 40, and beyond the bend on the other side.
+    low, wide = (float(re.search(rf"\n  {key} = \S+ (\S+) ", text)[1]) for key in ("origin", "size"))
+    assert low + wide > 40 + 2 * 2 and low < -30, text
 
 
 def test_pins():
