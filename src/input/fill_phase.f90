@@ -133,6 +133,8 @@ contains
             phase%motion(i)%bends = entry%key == "bend"
             phase%motion(i)%value = number(:7)
             phase%motion(i)%at = at
+          case default
+            ! Other keys are filled by the other procedures.
           end select
         end associate
       end associate

@@ -93,10 +93,11 @@ contains
       row("adaptive", kind_integer, "", "0", "times that an element may be divided into four "// &
           "where it comes to lie on a radius of a tool, or is bent; 0: never", lower=zero, &
           upper=real(most_levels, wp)), &
-      row("adaptive_angle", kind_real, "degrees", "15", "angle by which the sheet may turn over "// &
-          "an element that may be divided", lower=1.0_wp, upper=60.0_wp), &
-      row("adaptive_size", kind_real, "mm", "0", "least length of an element that comes from a division", &
-          lower=zero)]
+      row("adaptive_angle", kind_real, "degrees", "15", &
+          "angle by which the sheet may turn over an element that may be divided", &
+          lower=1.0_wp, upper=60.0_wp), &
+      row("adaptive_size", kind_real, "mm", "0", &
+          "least length of an element that comes from a division", lower=zero)]
   end function adaptive_keys
 
   function trim_keys() result(key)
@@ -319,9 +320,10 @@ contains
       row("press", kind_other, "N", "-", &
           "force on a tool at the end of the phase; the tool moves only in its direction", &
           repeatable=.true., form="tool number number number"), &
-      row("tilt", kind_other, "mm, N.mm/rad", "-", "pressed tool that may tilt about axes across "// &
-          "its force: pivot in the coordinates of the tool's file, at which the force acts, and "// &
-          "stiffness of its support against tilt", repeatable=.true., &
+      row("tilt", kind_other, "mm, N.mm/rad", "-", &
+          "pressed tool that may tilt about axes across its force: pivot in the coordinates of "// &
+          "the tool's file, at which the force acts, and stiffness of its support against tilt", &
+          repeatable=.true., &
           form="tool number number number number"), &
       row("release", kind_other, "", "-", &
           "tool that is withdrawn from the sheet over the phase, with its contact, and has "// &

@@ -191,8 +191,9 @@ contains
       if (iand(transfer(strain(i), 0_i8), exponent_bits) == exponent_bits) all_finite = .false.
     end do
     do i = 1, size(internal_variables)
-      if (iand(transfer(internal_variables(i), 0_i8), exponent_bits) == exponent_bits) &
-          all_finite = .false.
+      if (iand(transfer(internal_variables(i), 0_i8), exponent_bits) == exponent_bits) then
+        all_finite = .false.
+      end if
     end do
   end function all_finite
 

@@ -180,8 +180,8 @@ contains
           "At the end of the run, or where it stops, the sheet is thinned by more than 40 %: "// &
           "above the forming limits of sheets in plane strain. The strains concentrate within "// &
           "the length of an element, so that the thinning depends on the mesh.", &
-          "Larger radii, less restraint and friction, a smaller drawing ratio; for the limit of "// &
-          "the material itself `dd3 report`.")]
+          "Larger radii, less restraint and friction, a smaller drawing ratio; for the limit "// &
+          "of the material itself `dd3 report`.")]
   end function run_warnings
 
   !> Return the notes.

@@ -192,8 +192,9 @@ contains
     self%ended = state%phase == size(model%phase)
     if (self%ended) self%restart_increment = -1
     if (.not. allocated(error)) call save(self, model, state, error)
-    if (.not. allocated(error) .and. model%phase(state%phase)%keep) &
-        call keep_phase_end(self, model, state, error)
+    if (.not. allocated(error) .and. model%phase(state%phase)%keep) then
+      call keep_phase_end(self, model, state, error)
+    end if
   end subroutine write_phase_end
 
   !> Write the state at the end of a phase into a folder of its name, as that of a run that ends

@@ -88,8 +88,9 @@ contains
           energy_error(model, state)))
       end if
     end if
-    if (.not. ended .or. state%phase == size(model%phase)) &
-        call notes%add_new("W123", necking_warning(model, state))
+    if (.not. ended .or. state%phase == size(model%phase)) then
+      call notes%add_new("W123", necking_warning(model, state))
+    end if
     call add_tool_warnings(model, state, ended, adaptive, notes)
     call add_refinement_warnings(model, state, adaptive, notes)
   end subroutine end_notes

@@ -224,8 +224,9 @@ contains
     real(wp) :: motion(6), radius(6), part, missing, inward
 
     bounding%normal = 0.0_wp
-    if (direction%equivalent > 0.0_wp) &
-        bounding%normal = kelvin_deviator(direction%stress)/direction%equivalent
+    if (direction%equivalent > 0.0_wp) then
+      bounding%normal = kelvin_deviator(direction%stress)/direction%equivalent
+    end if
     bounding%decay = exp(-min(self%m*increment, longest_decay))
     motion = self%b*bounding%normal - start(7:12)
     bounding%centre = start(7:12) + (1 - bounding%decay)*motion
