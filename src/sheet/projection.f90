@@ -39,16 +39,19 @@ contains
     !> Gets curves that lie off the sheet.
     type(error_list_t), intent(inout) :: errors
 
-    real(wp) :: base(3, 2), middle(3, grid%n_column), half(3, grid%n_column)
+    real(wp) :: base(3, 2), column(3, 2, grid%n_column)
     real(wp), allocatable :: mapped(:, :)
     integer :: k
 
-    middle = 0.5_wp*(sheet%x(:, grid%node(0, :)) + sheet%x(:, grid%node(grid%n_layer, :)))
-    half = 0.5_wp*(sheet%x(:, grid%node(grid%n_layer, :)) - sheet%x(:, grid%node(0, :)))
+    associate (bottom => sheet%x(:, grid%node(0, :)), &
+        top => sheet%x(:, grid%node(grid%n_layer, :)))
+      column(:, 1, :) = 0.5_wp*(bottom + top)
+      column(:, 2, :) = 0.5_wp*(top - bottom)
+    end associate
     allocate (loop(size(curve)))
     if (norm2(spec%along) > 0.0_wp) then
       base = base_across(spec%along)
-      plane = matmul(transpose(base), middle)
+      plane = matmul(transpose(base), column(:, 1, :))
       do k = 1, size(curve)
         call new_loop(loop(k), matmul(transpose(base), curve(k)%point))
       end do
@@ -56,7 +59,7 @@ contains
     end if
     plane = sheet%mesh%x(:2, grid%node(0, :))
     do k = 1, size(curve)
-      call map_curve(grid, middle, half, plane, curve(k), spec, mapped, errors)
+      call map_curve(grid, column, plane, curve(k), spec, mapped, errors)
       call new_loop(loop(k), mapped)
     end do
   end subroutine project_curves
@@ -76,11 +79,11 @@ contains
   end function base_across
 
   !> Map a curve on the initial sheet.
-  subroutine map_curve(grid, middle, half, plane, curve, spec, mapped, errors)
+  subroutine map_curve(grid, column, plane, curve, spec, mapped, errors)
     type(grid_t), intent(in) :: grid
-    !> Positions of the columns in the middle of the thickness, vectors from there to the top, and
-    !> positions on the initial sheet, mm.
-    real(wp), intent(in) :: middle(:, :), half(:, :), plane(:, :)
+    !> Columns: the middle and the vector from there to the top, `(3, 2, n_column)`; their positions
+    !> on the initial sheet, `(2, n_column)`; mm.
+    real(wp), intent(in) :: column(:, :, :), plane(:, :)
     type(curve_t), intent(in) :: curve
     type(trim_spec_t), intent(in) :: spec
     !> `(2, n)`, mm.
@@ -105,7 +108,7 @@ contains
         associate (from => curve%point(:, i), to => curve%point(:, mod(i, n) + 1))
           point = from + (real(j - 1, wp)/real(parts(i), wp))*(to - from)
         end associate
-        call map_point(grid, middle, half, plane, point, mapped(:, k), distance)
+        call map_point(grid, column, plane, point, mapped(:, k), distance)
         largest = max(largest, distance)
       end do
     end do
@@ -140,9 +143,9 @@ contains
 
   !> Map a point to the initial sheet by its natural coordinates in the quadrilateral, among those
   !> near it, that it lies in or is next to; beyond the border of the sheet they are extended.
-  pure subroutine map_point(grid, middle, half, plane, point, mapped, distance)
+  pure subroutine map_point(grid, column, plane, point, mapped, distance)
     type(grid_t), intent(in) :: grid
-    real(wp), intent(in) :: middle(:, :), half(:, :), plane(:, :), point(3)
+    real(wp), intent(in) :: column(:, :, :), plane(:, :), point(3)
     real(wp), intent(out) :: mapped(2)
     !> Distance from the sheet, mm.
     real(wp), intent(out) :: distance
@@ -152,7 +155,7 @@ contains
     integer :: k, q
 
     do q = 1, grid%n_quad
-      to_centre(q) = norm2(0.25_wp*sum(middle(:, grid%corner(:, q)), dim=2) - point)
+      to_centre(q) = norm2(0.25_wp*sum(column(:, 1, grid%corner(:, q)), dim=2) - point)
     end do
     left = .true.
     least = huge(1.0_wp)
@@ -162,9 +165,9 @@ contains
       q = minloc(to_centre, dim=1, mask=left)
       left(q) = .false.
       associate (corner => grid%corner(:, q))
-        call find_natural(middle(:, corner), half(:, corner), point, natural)
+        call find_natural(column(:, 1, corner), column(:, 2, corner), point, natural)
         off = max(0.0_wp, abs(natural(3)) - 1.0_wp)* &
-            norm2(matmul(half(:, corner), bilinear(natural(:2))))
+            norm2(matmul(column(:, 2, corner), bilinear(natural(:2))))
         excess = max(0.0_wp, maxval(abs(natural(:2))) - 1.0_wp) &
             + off/max(tiny(1.0_wp), to_centre(q))
         if (excess >= least) cycle
