@@ -33,8 +33,7 @@ contains
           "system; with a limit of the address space `OPENBLAS_NUM_THREADS=1`."), &
       row("E203", "a file cannot be written or read", &
           "The disk is full, the folder was removed or replaced, another run writes into it, "// &
-          "or "// &
-          "the rights are missing.", "Free space, another folder; then `--restart`."), &
+          "or the rights are missing.", "Free space, another folder; then `--restart`."), &
       row("E204", "restart file that cannot be used", &
           "It is missing, incomplete, of another version, or belongs to another model.", &
           "The restart file of this job; the message names what differs."), &

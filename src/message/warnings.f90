@@ -36,8 +36,7 @@ contains
           "Leave `search_distance` out: its default is the thickness of the sheet."), &
       row("W008", "load on nodes that are held", &
           "Supports hold some nodes of the set in the direction of the load and carry their "// &
-          "part "// &
-          "of it.", "Load a set without these nodes, if the sheet should carry all of it."), &
+          "part of it.", "Load a set without these nodes, if the sheet should carry all of it."), &
       row("W009", "elements too long for bending", &
           "Elements `hex8` of this length are too stiff where the sheet bends.", &
           "At most half a thickness there, or the element `solid_shell`."), &
@@ -56,8 +55,7 @@ contains
           "Parameters of a convex surface."), &
       row("W014", "too little memory", &
           "The job needs more memory than the machine has left: it would be slow, or be ended "// &
-          "by "// &
-          "the system.", "A mesh with fewer elements, or `method = cgs` in `*SOLVER`."), &
+          "by the system.", "A mesh with fewer elements, or `method = cgs` in `*SOLVER`."), &
       row("W020", "axes of the material out of the sheet", &
           "`normal_direction` is not the normal of the sheet, the sheet is curved at the "// &
           "start, or `rolling_direction` does not lie in it: an orthotropic law takes other "// &
@@ -88,13 +86,11 @@ contains
           "Keep the records beside the restart file, and `*HISTORY` as it was."), &
       row("W102", "pressed tool without contact", &
           "At the start of the phase the pressed tool does not meet the sheet along its force, "// &
-          "or "// &
-          "its force points away from it.", &
+          "or its force points away from it.", &
           "The sign of the force, the place of the tool, its set of candidates."), &
       row("W103", "sheet that nothing holds", &
           "Neither supports nor tools in contact stop a rigid motion of the sheet at the start "// &
-          "of "// &
-          "the phase.", "Supports, or a tool that is in contact from the start."), &
+          "of the phase.", "Supports, or a tool that is in contact from the start."), &
       row("W104", "forces out of equilibrium in an unloading", &
           "The supports that the program chose carry forces of loads.", &
           "Remove the loads with the tools, or support the sheet by `*BOUNDARY`."), &
@@ -113,8 +109,7 @@ contains
       row("W108", "moved tool that has not touched the sheet", &
           "The tool passed the sheet, lies elsewhere, points its normals away from it, or has "// &
           "other candidates.", "Its place, its normals, its set of candidates; a finer mesh if "// &
-          "it "// &
-          "passed between the nodes."), &
+          "it passed between the nodes."), &
       row("W109", "tool between the nodes of the sheet", &
           "Contact holds at its points: a tool with a small radius enters the faces "// &
           "between them.", &
@@ -164,8 +159,7 @@ contains
       row("W120", "sheet beyond the holder", &
           "When the holder begins to press, the rim of the sheet lies more than a thickness "// &
           "beyond its outer edge, where nothing keeps the sheet from wrinkling, and no other "// &
-          "tool on that side of the sheet is nearer.", &
-          "A larger holder, or a smaller blank."), &
+          "tool on that side of the sheet is nearer.", "A larger holder, or a smaller blank."), &
       row("W121", "support that carries a part of the tool force", &
           "A support at a few nodes, which are not all nodes of a plane, carries more than 1 % "// &
           "of the largest force on a tool at the end of the phase, and more than the weight of "// &
