@@ -4,12 +4,15 @@
 !> description.
 module dd3_material_description
   use dd3_base_kinds, only : wp
-  use dd3_base_parameter, only : parameter_t, law_value_t
-  use dd3_base_text, only : same_name
+  use dd3_base_parameter, only : law_value_t, pair_name, parameter_t
+  use dd3_base_text, only : same_name, to_text
   implicit none
   private
   public :: description_t, internal_variable_t, problem_t, law_choice_t
-  public :: position_of, value_of, is_given, add_problem
+  public :: position_of, value_of, is_given, add_problem, check_strains
+
+  !> Largest plastic strain of a table, to detect strains given in per cent.
+  real(wp), parameter :: largest_strain = 10.0_wp
 
   !> Description of a law in help and messages.
   type :: description_t
@@ -107,5 +110,37 @@ contains
     longer(size(longer)) = problem_t(index, message, expected)
     call move_alloc(longer, problems)
   end subroutine add_problem
+
+  !> Require two points or more of a table, and plastic strains that increase from zero to at most
+  !> `largest_strain`.
+  pure subroutine check_strains(values, initial, form, problems)
+    type(law_value_t), intent(in) :: values(:)
+    !> What the first point is to be, and the form of a table.
+    character(len=*), intent(in) :: initial, form
+    type(problem_t), allocatable, intent(inout) :: problems(:)
+
+    integer :: i, last
+
+    last = 0
+    do i = 1, size(values)
+      if (values(i)%name /= pair_name) cycle
+      if (last == 0) then
+        if (abs(values(i)%abscissa) > 0.0_wp) call add_problem(problems, i, &
+            "the first point has a plastic strain of "//to_text(values(i)%abscissa), initial)
+      else if (.not. values(i)%abscissa > values(last)%abscissa) then
+        call add_problem(problems, i, "the plastic strain "//to_text(values(i)%abscissa)// &
+            " is not larger than the one before", "plastic strains that rise")
+      end if
+      last = i
+    end do
+    if (last > 0) then
+      if (values(last)%abscissa > largest_strain) call add_problem(problems, last, &
+          "the plastic strain "//to_text(values(last)%abscissa)//" is larger than "// &
+          to_text(largest_strain), "plastic strains: 0.1 is about 10 %")
+    end if
+    if (count(values%name == pair_name) < 2 .and. size(problems) == 0) then
+      call add_problem(problems, 0, "a table needs two points at least", form)
+    end if
+  end subroutine check_strains
 
 end module dd3_material_description

@@ -19,7 +19,7 @@ module dd3_report_necked_sheet
 contains
 
   !> Whether the sheet has necked anywhere.
-  logical function has_necked(model, state)
+  pure logical function has_necked(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
 
@@ -48,7 +48,7 @@ contains
 
   !> Find the node at which the sheet is thinned most, and the thinning there, over the initial
   !> thickness; zero without columns of nodes.
-  subroutine find_thinnest(model, state, node, thinning)
+  pure subroutine find_thinnest(model, state, node, thinning)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     integer, intent(out) :: node

@@ -6,14 +6,12 @@ module dd3_material_hardening_table
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t, row, kind_real, kind_text, pair_name
   use dd3_base_text, only : to_text
-  use dd3_material_description, only : description_t, problem_t, add_problem, is_given, value_of
+  use dd3_material_description, only : description_t, problem_t, add_problem, &
+      check_strains, is_given, value_of
   use dd3_material_hardening_isotropic, only : isotropic_hardening_t
   implicit none
   private
   public :: table_t
-
-  !> Largest plastic strain of a pair, to detect strains given in per cent.
-  real(wp), parameter :: largest_strain = 10.0_wp
 
   type, extends(isotropic_hardening_t) :: table_t
     private
@@ -50,41 +48,23 @@ contains
       law_value_t(pair_name, 430.0_wp, 0.4_wp), law_value_t(pair_name, 500.0_wp, 0.8_wp)])
   end subroutine describe
 
-  !> Require two pairs or more, strains that increase from zero to at most `largest_strain`, flow
-  !> stresses that do not decrease.
+  !> Require plastic strains as in any table, and flow stresses that do not decrease.
   subroutine check(values, problems)
     type(law_value_t), intent(in) :: values(:)
     type(problem_t), allocatable, intent(inout) :: problems(:)
 
-    integer :: i, last
+    real(wp), allocatable :: stress(:)
+    integer, allocatable :: place(:)
+    integer :: i
 
     if (size(problems) > 0) return
-    last = 0
-    do i = 1, size(values)
-      if (values(i)%name /= pair_name) cycle
-      if (last == 0 .and. abs(values(i)%abscissa) > 0.0_wp) then
-        call add_problem(problems, i, "the first point has a plastic strain of "// &
-            to_text(values(i)%abscissa), "0:Y, the initial flow stress")
-      else if (last > 0) then
-        if (.not. values(i)%abscissa > values(last)%abscissa) then
-          call add_problem(problems, i, "the plastic strain "//to_text(values(i)%abscissa)// &
-              " is not larger than the one before", "plastic strains that rise")
-        end if
-        if (values(i)%value < values(last)%value) then
-          call add_problem(problems, i, "the flow stress falls to "//to_text(values(i)%value), &
-              "flow stresses that do not fall")
-        end if
-      end if
-      last = i
+    call check_strains(values, "0:Y, the initial flow stress", "0:Y1 p2:Y2 ...", problems)
+    place = pack([(i, i=1, size(values))], values%name == pair_name)
+    stress = values(place)%value
+    do i = 2, size(stress)
+      if (stress(i) < stress(i - 1)) call add_problem(problems, place(i), &
+          "the flow stress falls to "//to_text(stress(i)), "flow stresses that do not fall")
     end do
-    if (last > 0) then
-      if (values(last)%abscissa > largest_strain) call add_problem(problems, last, &
-          "the plastic strain "//to_text(values(last)%abscissa)//" is larger than "// &
-          to_text(largest_strain), "plastic strains: 0.1 is about 10 %")
-    end if
-    if (count(values%name == pair_name) < 2 .and. size(problems) == 0) then
-      call add_problem(problems, 0, "a table needs two points at least", "0:Y1 p2:Y2 ...")
-    end if
   end subroutine check
 
   subroutine set(self, values)

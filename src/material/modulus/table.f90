@@ -5,7 +5,8 @@ module dd3_material_modulus_table
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t, row, kind_real, kind_text, pair_name
   use dd3_base_text, only : to_text
-  use dd3_material_description, only : description_t, problem_t, add_problem
+  use dd3_material_description, only : description_t, problem_t, add_problem, &
+      check_strains
   use dd3_material_modulus_law, only : modulus_t
   implicit none
   private
@@ -41,32 +42,23 @@ contains
       law_value_t(pair_name, 1.75e5_wp, 0.06_wp), law_value_t(pair_name, 1.65e5_wp, 0.15_wp)])
   end subroutine describe
 
-  !> Require two points or more, strains that increase from zero, moduli that do not increase.
+  !> Require plastic strains as in any table, and moduli that do not increase.
   subroutine check(values, problems)
     type(law_value_t), intent(in) :: values(:)
     type(problem_t), allocatable, intent(inout) :: problems(:)
 
-    integer :: i, last
+    real(wp), allocatable :: young(:)
+    integer, allocatable :: place(:)
+    integer :: i
 
     if (size(problems) > 0) return
-    last = 0
-    do i = 1, size(values)
-      if (values(i)%name /= pair_name) cycle
-      if (last == 0) then
-        if (abs(values(i)%abscissa) > 0.0_wp) call add_problem(problems, i, &
-            "the first point has a plastic strain of "//to_text(values(i)%abscissa), &
-            "0:young, the initial modulus")
-      else if (.not. values(i)%abscissa > values(last)%abscissa) then
-        call add_problem(problems, i, "the plastic strain "//to_text(values(i)%abscissa)// &
-            " is not larger than the one before", "plastic strains that rise")
-      else if (values(i)%value > values(last)%value) then
-        call add_problem(problems, i, "the modulus rises to "//to_text(values(i)%value), &
-            "moduli that do not rise")
-      end if
-      last = i
+    call check_strains(values, "0:young, the initial modulus", "0:young p2:E2 ...", problems)
+    place = pack([(i, i=1, size(values))], values%name == pair_name)
+    young = values(place)%value
+    do i = 2, size(young)
+      if (young(i) > young(i - 1)) call add_problem(problems, place(i), &
+          "the modulus rises to "//to_text(young(i)), "moduli that do not rise")
     end do
-    if (count(values%name == pair_name) < 2 .and. size(problems) == 0) call add_problem(problems, &
-        0, "a table needs two points at least", "0:young p2:E2 ...")
   end subroutine check
 
   subroutine set(self, values)
