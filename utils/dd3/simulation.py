@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs of the program from Python."""
 
-
 import signal
 import subprocess
 import tempfile
