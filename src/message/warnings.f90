@@ -175,7 +175,13 @@ contains
           "above the forming limits of sheets in plane strain. The strains concentrate within "// &
           "the length of an element, so that the thinning depends on the mesh.", &
           "Larger radii, less restraint and friction, a smaller drawing ratio; for the limit "// &
-          "of the material itself `dd3 report`.")]
+          "of the material itself `dd3 report`."), &
+      row("W124", "sheet that has slid under a punch", &
+          "Every node on the level faces of the punch has moved across its path, by more than "// &
+          "half the thickness: the sheet is drawn over the punch from one side. Holes made "// &
+          "before lie off their places, and the punch leaves marks.", &
+          "A pad against the punch or locating pins; walls of equal height; more restraint on "// &
+          "the side from which the sheet is drawn.")]
   end function run_warnings
 
   !> Return the notes.

@@ -28,6 +28,9 @@ module dd3_output_closing
     !> space that the tools leave in the wall at that place, mm.
     type(place_t) :: floor, wall
     real(wp) :: wall_space = 0.0_wp
+    !> Least displacement across the path of the sheet under its level faces, and its vector, mm.
+    type(place_t) :: slide
+    real(wp) :: slide_vector(3) = 0.0_wp
   end type punch_t
 
   !> Sheet under a holder.

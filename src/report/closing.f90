@@ -8,20 +8,24 @@
 !> than at the start counts as thick as that, since thinning is no open tool. The sheet is formed
 !> there if it lies on one of the tools. In walls the tools may leave more space than the thickness
 !> by design: there the distance from the nearer tool and that space are told, and not judged. Where
-!> no tool is across, as under a punch in an open die, nothing is measured.
+!> no tool is across, as under a punch in an open die, neither is measured.
+!>
+!> A sheet that is drawn over a punch from both sides keeps a place under it that does not move
+!> across the path. The least displacement of the columns on its level faces is the slide.
 module dd3_report_closing
   use dd3_base_kinds, only : wp
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_output_closing, only : closing_t, held_t, place_t, punch_t
   use dd3_report_held_sheet, only : draws, is_holder, measure_holder
-  use dd3_report_tool_view, only : are_parallel, flat, meet, new_path, new_place, new_view, &
+  use dd3_report_tool_view, only : are_parallel, flat, meet, near, new_path, new_place, new_view, &
       nodes_of_column, path_t, view_t
   implicit none
   private
   public :: measure_closing
 
-  !> Least n.d of the normal of the punch and its path at which a sheet on a pad is pinched.
+  !> Least n.d of the normal of the punch and its path at which a sheet on a pad is pinched, and of
+  !> a level face.
   real(wp), parameter :: level = 0.87_wp
 
 contains
@@ -128,6 +132,8 @@ contains
 
     view(1) = new_view(model, state, path, node(1))
     if (view(1)%gap(self%tool) >= huge(1.0_wp)) return
+    if (view(1)%gap(self%tool) <= near*model%thickness_at(node(1)) .and. &
+        view(1)%slope(self%tool) >= level) call measure_slide(self, model, state, path, node(1))
     view(2) = new_view(model, state, path, node(2))
     view(2)%gap(self%tool) = huge(1.0_wp)
     other = minloc(view(2)%gap, dim=1)
@@ -143,6 +149,23 @@ contains
       self%wall_space = view(1)%gap(self%tool) + view(2)%gap(other)
     end if
   end subroutine measure_column
+
+  !> Measure the displacement across the path of a node on a level face of the punch.
+  pure subroutine measure_slide(self, model, state, path, node)
+    type(punch_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(path_t), intent(in) :: path
+    integer, intent(in) :: node
+
+    real(wp) :: vector(3)
+
+    vector = state%x(:, node) - model%x0(:, node)
+    vector = vector - dot_product(vector, path%direction)*path%direction
+    if (self%slide%node > 0 .and. norm2(vector) >= self%slide%distance) return
+    self%slide = new_place(state, node, norm2(vector), self%tool)
+    self%slide_vector = vector
+  end subroutine measure_slide
 
   !> Measure a column that lies across the path of a punch.
   subroutine measure_floor(self, model, state, path, node, view, off)

@@ -14,6 +14,8 @@ module dd3_report_closing_notes
   !> Path that is left, and distance from the tools, from which on the sheet is not formed, and
   !> distance beyond a holder that is reported, in thicknesses. Tools made by `dd3 tool` leave 0.1.
   real(wp), parameter :: open_path = 0.2_wp, off_tools = 0.1_wp, notable_beyond = 1.0_wp
+  !> Least slide of the sheet under a punch that is reported, in thicknesses.
+  real(wp), parameter :: notable_slide = 0.5_wp
 
 contains
 
@@ -35,6 +37,7 @@ contains
       if (closing%punch(i)%floor%node > 0) then
         call add_punch_note(model, state, closing%punch(i), notes)
       end if
+      call add_slide(model, state, closing%punch(i), before, notes)
     end do
     do i = 1, size(closing%holder)
       associate (beyond => closing%holder(i)%beyond, tool => closing%holder(i)%tool)
@@ -89,6 +92,39 @@ contains
       call notes%add_new("W119", text)
     end associate
   end subroutine add_punch_note
+
+  !> Add a warning on a sheet that has slid under a punch, unless it had at the end of a phase
+  !> before.
+  subroutine add_slide(model, state, punch, before, notes)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(punch_t), intent(in) :: punch
+    type(closing_t), intent(in) :: before(:)
+    type(message_list_t), intent(inout) :: notes
+
+    integer :: k
+
+    associate (vector => punch%slide_vector, least => notable_slide*model%thickness)
+      if (punch%slide%distance <= least) return
+      if (any([(had_slid(before(k), punch%tool, least), k=1, size(before))])) return
+      call notes%add_new("W124", "in phase '"//model%phase(state%phase)%name//"' the sheet has "// &
+          "slid under '"//model%tool(punch%tool)%name//"' by "//to_text(punch%slide%distance, 3)// &
+          " mm or more everywhere, least at "//name_of(punch%slide)//": displacement across "// &
+          "the path "//to_text(vector(1), 3)//" "//to_text(vector(2), 3)//" "// &
+          to_text(vector(3), 3)//" mm")
+    end associate
+  end subroutine add_slide
+
+  !> Whether the sheet had slid under a punch by more than a distance, mm.
+  pure logical function had_slid(closing, tool, distance)
+    type(closing_t), intent(in) :: closing
+    integer, intent(in) :: tool
+    real(wp), intent(in) :: distance
+
+    had_slid = .false.
+    if (.not. allocated(closing%punch)) return
+    had_slid = any(closing%punch%tool == tool .and. closing%punch%slide%distance > distance)
+  end function had_slid
 
   !> Return the node of a place with its position as text.
   pure function name_of(place) result(text)

@@ -19,7 +19,7 @@ module dd3_report_tool_view
   private
   public :: path_t, view_t
   public :: across, are_parallel, meet, new_path, new_place, new_view, nodes_of_column
-  public :: depth, flat
+  public :: depth, flat, near
 
   !> Least -m.n of the normals of sheet and tool that face each other, and of two tools that form it
   !> between them; least |n.d| of a floor for the direction d of a path.

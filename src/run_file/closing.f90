@@ -34,6 +34,8 @@ contains
         call add_place(json, model, "off_tools", punch%floor)
         call add_place(json, model, "off_walls", punch%wall)
         call json%add("wall_space", punch%wall_space)
+        call add_place(json, model, "slide", punch%slide)
+        call json%add("slide_vector", punch%slide_vector)
         call json%end_object()
       end associate
     end do

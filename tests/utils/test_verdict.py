@@ -45,6 +45,8 @@ def test_answers():
         == [OPEN, GOOD, BAD]
     assert "sheet beyond the holder" not in answers(job_of(punch, holder))
     assert answers(job_of(punch, holder, codes=["W120"]))["sheet beyond the holder"] == DOUBTFUL
+    slid = {**punch, "slide": place(0.6)}
+    assert [answers(job_of(slid, codes=codes))["slide"] for codes in ([], ["W124"])] == [GOOD, DOUBTFUL]
     support = {"name": "middle", "axis": "x", "reaction": 300.0, "tool": "punch", "tool_force": 2e4}
     assert "supports" not in answers(job_of(punch, support=support))
     assert answers(job_of(punch, support=support, codes=["W121"]))["supports"] == DOUBTFUL

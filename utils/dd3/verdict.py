@@ -80,6 +80,17 @@ def formed(phases: Sequence[Ended], waves: float | None) -> list[Item]:
     return items
 
 
+def slides(phases: Sequence[Ended]) -> list[Item]:
+    """Tell how far the sheet has slid under each punch, at the end of the last phase in which it ends its path."""
+    slid = [(phase, punch) for phase in phases for punch in phase.closing["punches"] if punch.get("slide")]
+    warned = {punch["tool"] for phase, punch in slid if "W124" in phase.codes}
+    last = {punch["tool"]: punch["slide"] for _, punch in slid}
+    return [Item("slide", DOUBTFUL if tool in warned else GOOD,
+                 f"the sheet has moved across the path of '{tool}' under its level faces by {place['distance']:.2g} mm "
+                 f"or more, least {at(place)}")
+            for tool, place in last.items()]
+
+
 def holders(phases: Sequence[Ended], limit: float | None) -> list[Item]:
     """Judge the waves under the holders at the end of the forming, and tell of the sheet beyond them."""
     last = {holder["tool"]: holder for phase in phases for holder in phase.closing["holders"]}
@@ -152,7 +163,7 @@ def judge(job: dict[str, Any], waves: float | None, limits: Sequence[Item], spri
     waves: largest height under a holder and in walls, mm. limits, springback: items of `splits` and `sprung`.
     """
     phases = list(ended_phases(job))
-    return [end_of_run(job), *formed(phases, waves), *holders(phases, waves), *limits, *springback, *supports(phases),
+    return [end_of_run(job), *formed(phases, waves), *slides(phases), *holders(phases, waves), *limits, *springback, *supports(phases),
             *pins(phases)]
 
 
