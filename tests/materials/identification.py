@@ -17,6 +17,7 @@ import re
 import sys
 import tempfile
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 
@@ -24,6 +25,7 @@ from dd3.command import dispatch
 from dd3.errors import Problem, run
 from dd3.identify import least_squares as fit
 from dd3.identify.measurements import TENSION, Datum
+from dd3.plot.figures import save
 from dd3.programs import parser_of_runs
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -279,13 +281,20 @@ def check_hardening(trial):
 
 
 def check_reversal(trial):
-    """Check a back-stress from tension and then compression, and the picture."""
+    """Check a back-stress from tension and then compression, and the picture: both curves, one on the other."""
     write_curve(curve(trial, REVERSAL, [(0.08, 160), (-0.04, 240)])[4::5])
-    found, rows, text = trial.fit("--hardening", "voce", "--backstress", "lemaitre_chaboche", "--curve", "curve.csv",
-                                  "--criterion", "hill48", *STEEL, "--plot", "found.png")
+    with mock.patch("dd3.identify.command.save", wraps=save) as drawn:
+        found, rows, text = trial.fit("--hardening", "voce", "--backstress", "lemaitre_chaboche", "--curve",
+                                      "curve.csv", "--criterion", "hill48", *STEEL, "--plot", "found.png")
     trial.near("reversal", found, of_law(REVERSAL), 2e-3)
     trial.expect("Note" not in text, f"reversal: notes\n{text}")
-    trial.expect(Path("found.png").exists() and Path("found.png").stat().st_size > 1e4, "no picture")
+    curves, ratios = (part.get_lines() for part in drawn.call_args.args[0].axes[:2])
+    measured, identified = (next(line for line in curves if line.get_label() == name) for name in ("measured", "identified"))
+    far = np.abs(np.subtract(measured.get_xydata(), identified.get_xydata())).max(axis=0)
+    trial.expect(far[0] == 0 and far[1] < 1 and min(np.diff(measured.get_xdata())) < 0, f"picture: {far} off")
+    values = {tuple(row) for line in ratios for row in line.get_xydata() if line.get_label() == "measured"}
+    trial.expect(values == {(0, 1.79), (45, 1.51), (90, 2.27)}, f"picture: r-values {values}")
+    trial.expect(Path("found.png").exists(), "no picture")
 
 
 def check_two_surfaces(trial):

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Import of LS-DYNA decks: two that run to their ends, materials, wrong and damaged decks."""
 
-import argparse
 import math
 import re
 import subprocess
@@ -26,7 +25,7 @@ MUTATED = 1000
 def imported(text, **options):
     """Return the import of a deck in the folder of the test, without its tools' surfaces."""
     Path("deck.k").write_bytes(text if isinstance(text, bytes) else text.encode())
-    found = Import(argparse.Namespace(deck=Path("deck.k"), units=None, blank=None, **options))
+    found = Import(Path("deck.k"), **options)
     return found, "\n".join(found.entries())
 
 
