@@ -234,6 +234,7 @@ PICTURES = {
     "yld91": (orthotropic, {"measured": STEEL}), "karafillis_boyce": (orthotropic, {}),
     "drucker": (orthotropic, {"measured": STEEL}), "cazacu_barlat2001": (orthotropic, {"measured": STEEL}),
     "yld2004": (orthotropic, {"measured": ALLOY}), "cpb06": (orthotropic, {"compression": True}),
+    "yld2000": (orthotropic, {"measured": ALLOY}), "bbc2008": (orthotropic, {"measured": ALLOY}),
     **{law: (tension, {}) for law in ("perfect", "linear", "swift", "voce", "swift_voce", "ludwik",
                                       "hockett_sherby")},
     "table": (tension, {"points_of": TABLE}), "teodosiu_hu": (teodosiu_hu, {}),

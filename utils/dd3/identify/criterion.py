@@ -15,6 +15,7 @@ MISSED = 0.1  # difference from a measured value, over the value or 1, that is n
 # Criterion: its parameters with start, lowest and highest value; the values of those that are not sought; the least
 # number of measured values.
 NORMAL, SHEAR = ("12", "13", "21", "23", "31", "32"), ("66",)
+BANABIC = ("l1", "l2", "m1", "m2", "m3", "n1", "n2", "n3")
 CRITERIA: dict[str, tuple[dict[str, tuple[float, float, float]], dict[str, float], int]] = {
     "hill48": ({"F": (0.5, -1, 5), "G": (0.5, -1, 5), "H": (0.5, -1, 5), "N": (1.5, 0.05, 10)}, {}, 3),
     "hosford": ({"m": (6, 2, 100)}, {}, 1),
@@ -28,7 +29,11 @@ CRITERIA: dict[str, tuple[dict[str, tuple[float, float, float]], dict[str, float
     "yld2004": ({letter + place: (1, -3, 4) for letter in "cd" for place in NORMAL + SHEAR}, {"m": 8}, 3),
     "cpb06": ({"C12": (0, -3, 3), "C13": (0, -3, 3), "C22": (1, -4, 4), "C23": (0, -3, 3), "C33": (1, -4, 4),
                "C66": (1, 0.05, 5), "k": (0, -0.99, 0.99)}, {"C11": 1, "m": 2}, 3),
+    "yld2000": ({f"alpha{i}": (1, -3, 4) for i in range(1, 9)}, {"m": 8}, 3),
+    "bbc2008": ({f"{name}_{r}": (0.5, -2, 2) for r in (1, 2) for name in BANABIC}, {"k": 4}, 3),
 }
+# Criteria whose isotropic start is a saddle, as two of their parts are the same there: the parameters of the first one.
+SADDLES = {"yld2004": lambda name: name.startswith("c"), "bbc2008": lambda name: name.endswith("_1")}
 
 
 def sought_parameters(law: str, given: Mapping[str, float], data: list[Datum]
@@ -95,8 +100,9 @@ def criterion(law: str, given: Mapping[str, float], points: Points, data: list[D
 
     ratio = next(i for i, d in enumerate(data + extra) if d.kind == "equibiaxial" and d.quantity == "r")
     fit = Fit(evaluate, sought, [d.value for d in data], [d.weight for d in data], PULL)
-    if law == "yld2004":  # not where both transformations are the same: a saddle
-        fit.start = fit.start + np.array([0.02 if name[0] == "c" else -0.02 for name in fit.names])
+    if law in SADDLES:
+        first = SADDLES[law]
+        fit.start = fit.start + np.array([0.02 if first(name) else -0.02 for name in fit.names])
     point, costs = fit.best(starts, 0.3, seed)
     text, values = rounded(lambda digits: law_text(law, {**dict(zip(sought, point)), **fixed}, digits), compute)
     report(law, costs)
