@@ -32,7 +32,7 @@ DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
 FENCE = re.compile(r"^```\w*\n(.*?)^```", re.DOTALL | re.MULTILINE)
 GATHERED = {"yield": "yield_criteria.md", "hardening": "hardening_laws.md", "backstress": "hardening_laws.md",
-            "modulus": "hardening_laws.md"}
+            "modulus": "hardening_laws.md", "rate": "hardening_laws.md"}
 LAW = re.compile(r"^## `(\w+) = law|^\| `(\w+)` \|", re.MULTILINE)
 PARAMETER = re.compile(r"^  (\S+) = (a \w.*?) \((\w.*)\)$", re.MULTILINE)
 BOUND = re.compile(r"[<>]=? ")
@@ -155,14 +155,14 @@ def laws_of(reference):
 
 
 def parameters_of(said):
-    """Return unit, bounds and default of a law's parameters by name, from the output of --help."""
+    """Return unit, bounds and default of parameters by name, from the output of --help; of laws of one name the first."""
     found = {}
     for name, value, states in PARAMETER.findall(said):
         parts = value.split(", ")[1:]
         bounds = [part for part in parts if BOUND.match(part)]
         unit = [part for part in parts if part not in bounds and " " not in part]
         default = ", ".join(state.removeprefix("default ") for state in states.split(") ("))
-        found[name] = [unit[0] if unit else "-", ", ".join(bounds) or "any", default]
+        found.setdefault(name, [unit[0] if unit else "-", ", ".join(bounds) or "any", default])
     return found
 
 
