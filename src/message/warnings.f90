@@ -175,7 +175,12 @@ contains
           "above the forming limits of sheets in plane strain. The strains concentrate within "// &
           "the length of an element, so that the thinning depends on the mesh.", &
           "Larger radii, less restraint and friction, a smaller drawing ratio; for the limit "// &
-          "of the material itself `dd3 report`.")]
+          "of the material itself `dd3 report`."), &
+      row("W125", "curve of a cut beyond the sheet", &
+          "A curve of `*TRIM` that bounds what stays goes beyond the border of the sheet, where "// &
+          "this stays as it is; or a curve lies beside the sheet and cuts nothing, as curves of "// &
+          "a whole part do beside a quarter of it.", &
+          "Curves on the sheet, or a larger blank; in a quarter of a sheet it is as it should be.")]
   end function run_warnings
 
   !> Return the notes.
