@@ -82,6 +82,9 @@ contains
     call check_element_length(case, model, warnings)
     call tool_warnings(case, model, warnings)
     call check_drawbeads(case, model, warnings)
+    do i = 1, model%cut_warnings%count
+      call warnings%add(model%cut_warnings%item(i))
+    end do
   end subroutine unit_warnings
 
   !> Warn of an unusual thickness.

@@ -181,7 +181,12 @@ contains
           "half the thickness: the sheet is drawn over the punch from one side. Holes made "// &
           "before lie off their places, and the punch leaves marks.", &
           "A pad against the punch or locating pins; walls of equal height; more restraint on "// &
-          "the side from which the sheet is drawn.")]
+          "the side from which the sheet is drawn."), &
+      row("W125", "curve of a cut beyond the sheet", &
+          "A curve of `*TRIM` that bounds what stays goes beyond the border of the sheet, where "// &
+          "this stays as it is; or a curve lies beside the sheet and cuts nothing, as curves of "// &
+          "a whole part do beside a quarter of it.", &
+          "Curves on the sheet, or a larger blank; in a quarter of a sheet it is as it should be.")]
   end function run_warnings
 
   !> Return the notes.

@@ -3,6 +3,7 @@
 !> points; the components added here are the process: materials, tools, phases, output.
 module dd3_model_model
   use dd3_base_kinds, only : wp
+  use dd3_base_message, only : message_list_t
   use dd3_material_material, only : material_t
   use dd3_model_contact_data, only : contact_data_t
   use dd3_model_internal_variables, only : variable_t
@@ -48,6 +49,8 @@ module dd3_model_model
     integer, allocatable :: first_digest(:)
     !> Refinements of the sheet since the start of the job; not allocated before the first.
     type(mesh_change_t), allocatable :: change(:)
+    !> Of the cuts of the sheet.
+    type(message_list_t) :: cut_warnings
     !> What is written, and when.
     type(output_spec_t) :: output
   contains

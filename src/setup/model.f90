@@ -97,6 +97,7 @@ contains
     if (size(case%point) > 0) return
     call new_sheet(sheet, model, case, errors)
     if (errors%count > 0) return
+    model%cut_warnings = sheet%warnings
     call set_on_sheet(model, case, sheet, size(case%start) > 0, errors)
     ! Set last; errors in the phases do not prevent the checks below.
     if (.not. allocated(model%history)) return

@@ -57,6 +57,7 @@ contains
     new%digest = sheet%digest
     new%has_state = sheet%has_state
     new%report = sheet%report
+    new%warnings = sheet%warnings
     new%mesh%thickness = sheet%mesh%thickness
     new%mesh%mesh_number = sheet%mesh%mesh_number
     call move_nodes(sheet%mesh%x, cut, place, moved, node, new%mesh%n_node, new%mesh%x)

@@ -46,6 +46,7 @@ contains
     refined%digest = sheet%digest
     refined%has_state = sheet%has_state
     refined%report = sheet%report
+    refined%warnings = sheet%warnings
     if (element%n_enhanced > 0) then
       call place_nodes(sheet%mesh%x, node, division, refined%mesh%x)
       call place_nodes(sheet%x, node, division, refined%x)

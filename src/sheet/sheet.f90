@@ -2,6 +2,7 @@
 !> The sheet before the first phase: its mesh, and the state that an earlier run has left in it.
 module dd3_sheet_sheet
   use dd3_base_kinds, only : pi, wp
+  use dd3_base_message, only : message_list_t
   use dd3_base_text, only : text_t
   use dd3_linalg_tensor, only : rotation_about
   use dd3_mesh_mesh, only : mesh_t
@@ -31,6 +32,8 @@ module dd3_sheet_sheet
     real(wp), allocatable :: stress(:, :, :), internal_variables(:, :, :), orientation(:, :, :, :)
     !> What has been done to it, for the log, a line each.
     character(len=:), allocatable :: report
+    !> Of its cuts.
+    type(message_list_t) :: warnings
   contains
     procedure :: place
   end type sheet_t

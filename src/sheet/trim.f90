@@ -35,6 +35,9 @@ module dd3_sheet_trim
   integer, parameter :: n_ring = 2
   !> Least sine of an angle of an element near the cut.
   real(wp), parameter :: least_sine = 0.15_wp
+  !> Distance of a curve beyond the border of the sheet that is told, over the length of the
+  !> element's side there.
+  real(wp), parameter :: told_distance = 0.01_wp
 
 contains
 
@@ -72,6 +75,7 @@ contains
     call select_core(cutting, stays, cut%kept)
     call check_core(spec, cutting, cut%kept, curve, errors)
     if (errors%count > before) return
+    call warn_of_border(sheet, spec, cutting, curve)
     call find_contours(cutting, stays, cut%plane, line)
     call find_chains(cut%grid, cut%kept, cut%chain)
     allocate (fit(size(cut%chain)))
@@ -179,6 +183,69 @@ contains
         "cut '"//spec%name//"' misses the sheet: nothing is cut off", &
         "curves on the sheet (see keep, along)", code="E153")
   end subroutine check_core
+
+  !> Warn of curves that bound what stays and go beyond the border of the sheet, and of curves
+  !> beside the sheet. Other curves across the border are notches.
+  subroutine warn_of_border(sheet, spec, cutting, curve)
+    type(sheet_t), intent(inout) :: sheet
+    type(trim_spec_t), intent(in) :: spec
+    type(cut_function_t), intent(in) :: cutting
+    type(curve_t), intent(in) :: curve(:)
+
+    real(wp), allocatable :: beyond(:)
+    character(len=:), allocatable :: text
+    logical :: cuts
+    integer :: i, k
+
+    do k = 1, size(cutting%loop)
+      associate (loop => cutting%loop(k))
+        beyond = [(distance_beyond(cutting, loop%point(:, i)), i=1, size(loop%point, 2))]
+        cuts = any(beyond <= 0.0_wp)
+        if (.not. cuts) cuts = any([(is_inside(cutting%loop(k:k), cutting%plane(:, i)), &
+            i=1, size(cutting%plane, 2))])
+      end associate
+      text = ""
+      if (.not. cuts) then
+        text = "lies beside the sheet, "//to_text(minval(beyond), 3)// &
+            " mm beyond its border, and cuts nothing"
+      else if (spec%keeps_inside .and. any(beyond > 0.0_wp)) then
+        text = "goes up to "//to_text(maxval(beyond), 3)//" mm beyond the border of the sheet, "// &
+            "which stays as it is there"
+      end if
+      if (len(text) > 0) call sheet%warnings%add_new("W125", "the curve of cut '"//spec%name// &
+          "' that begins here "//text, curve(k)%at)
+    end do
+  end subroutine warn_of_border
+
+  !> Return the distance of a point of the plane from the border of the sheet, mm, 0 on the sheet
+  !> and very near to it.
+  pure real(wp) function distance_beyond(cutting, point) result(distance)
+    type(cut_function_t), intent(in) :: cutting
+    real(wp), intent(in) :: point(2)
+
+    real(wp) :: from(2), along(2), away, side
+    integer :: i, q
+
+    distance = 0.0_wp
+    if (on_sheet(cutting, point)) return
+    distance = huge(1.0_wp)
+    side = 0.0_wp
+    associate (grid => cutting%grid)
+      do q = 1, grid%n_quad
+        do i = 1, 4
+          if (grid%neighbour(i, q) /= 0) cycle
+          from = cutting%plane(:, grid%corner(i, q))
+          along = cutting%plane(:, grid%corner(mod(i, 4) + 1, q)) - from
+          away = norm2(point - from - along*max(0.0_wp, min(1.0_wp, &
+              dot_product(point - from, along)/max(tiny(1.0_wp), dot_product(along, along)))))
+          if (away >= distance) cycle
+          distance = away
+          side = norm2(along)
+        end do
+      end do
+    end associate
+    if (distance <= told_distance*side) distance = 0.0_wp
+  end function distance_beyond
 
   !> Report chains that do not follow a line of the cut of their own, and lines that none follows.
   subroutine check_fits(spec, sheet, cut, fit, line, errors)

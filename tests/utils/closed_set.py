@@ -70,7 +70,8 @@ def is_inside(tag):
 
 
 # Parts of which tools are compared.
-DRAWN = ("angle", "u_section", "cup", "tray", "slotted", "louvred", "stepped", "bend", "whole_bend", "rows")
+DRAWN = ("angle", "u_section", "cup", "tray", "slotted", "louvred", "stepped", "bend", "whole_bend", "rows",
+         "notched_lid", "notched_flange", "folded_cover")
 # Parts with openings, their number on the upper side, and the same parts without any.
 PAIRS = {
     "angle": (part_set.angle, 4, lambda: part_set.strip([(0, 30), (0, 0), (40, 0)], 2, 3, 60)),
@@ -88,6 +89,7 @@ PAIRS = {
     "rows": (rows_of_holes, 5, part_set.tray),
     "notched_lid": (part_set.notched_lid, 2, round_lid((0, 0), (30, 0), (30, 8))),
     "notched_flange": (part_set.notched_flange, 1, round_lid((0, 0), (30, 0), (32, 8), (45, 8))),
+    "folded_cover": (part_set.folded_cover, 1, lambda: part_set.folded_cover(notch=False)),
     "surface": (surface_of(part_set.wall_hole_tray), 1, surface_of(part_set.tray)),
     "bend_of_surface": (surface_of(bend), 1, surface_of(part_set.tray)),
 }

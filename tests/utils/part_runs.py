@@ -38,12 +38,13 @@ def timed(words):
     return after.children_user + after.children_system - before.children_user - before.children_system, made
 
 
-def made_tools(name, work):
-    """Make the tools of a part; return what it says or the error, the number of patches and the processor time, s."""
+def made_tools(name, work, program):
+    """Make the tools of a part with the forces that the program gives; return what it says or the error, the number of patches and the processor time, s."""
     part = PARTS[name]
     folder, said = work / name, work / f"{name}.txt"
     if not said.exists():
         words = [sys.executable, "-m", "dd3", "tool", work / "parts" / f"{name}.{part.ending}", folder]
+        words += ["--program", program]
         words += ["--thickness", "1"] if part.kind in ("surface", "block") else []
         words += ["--part", "1"] if part.kind == "several" else []
         spent, made = timed(words)
@@ -92,7 +93,7 @@ def main():
     write(options.work / "parts")
     rows = []
     for name in options.names or PARTS:
-        said, patches, seconds = made_tools(name, options.work)
+        said, patches, seconds = made_tools(name, options.work, options.program)
         row = [f"`{name}`", said, str(patches or ""), seconds]
         ready = said == "made" and not options.tools
         rows.append([*row, *(drawn(name, options.work, options.program) if ready else [""] * (len(TITLES) - 4))])

@@ -42,24 +42,30 @@ def rounded(gmsh: Any, side: list[int], edges: dict[int, float]) -> tuple[dict[i
     if not mitres:
         return fillets.rounded(gmsh, side, edges), [fillets.said_of(edges)]
     removed = mitred(gmsh, fillets.volume_of(gmsh, side))
-    own = {tag: radius for tag, radius in removed.items() if tag in side}
+    own = [tag for tag in removed if tag in side]
     try:
         sharp = unfilleted(gmsh, side, edges, removed)
         origin = fillets.rounded(gmsh, list(sharp.faces), sharp.edges)
     except Exception:  # Gmsh raises nothing more specific
-        raise Problem(f"the fillets of faces {spans(list(own))} end in mitres, edges {spans(mitres)}, and cannot be led "
-                      f"around these corners by {max(*own.values(), *edges.values()):.3g} mm: round the corners in the CAD program, before "
-                      "the fillets") from None
+        largest = max(*removed.values(), *edges.values())
+        raise Problem(f"the fillets of faces {spans(own)} end in mitres, edges {spans(mitres)}, and cannot be led "
+                      f"around these corners by {largest:.3g} mm: round the corners in the CAD program, before the "
+                      "fillets") from None
     near = fillets.tolerance_of(gmsh)
-    found = {tag: sharp.faces[old] if old else fillets.face_of(gmsh, tag, list(own), near) or 0
+    found = {tag: sharp.faces[old] if old else fillets.face_of(gmsh, tag, own, near) or 0
              for tag, old in origin.items()}
-    points = [middle_of(gmsh, edge) for edge in sharp.corners]
     new = [tag for tag, old in found.items() if not old]
+    return found, [fillets.said_of(sharp.edges), said_of(gmsh, own, sharp, new)]
+
+
+def said_of(gmsh: Any, own: list[int], sharp: Unfilleted, new: list[int]) -> str:
+    """Return what is said of fillets that were led around corners, where they have new faces."""
+    points = [middle_of(gmsh, edge) for edge in sharp.corners]
     off = max(min(float(np.linalg.norm(gmsh.model.getClosestPoint(2, tag, point)[0] - point)) for tag in new)
               for point in points)
-    return found, [fillets.said_of(sharp.edges), f"fillets of faces {spans(list(own))}, which end in mitres, led around "
-                   f"{len(points)} corners, by {fillets.in_words(sharp.edges[edge] for edge in sharp.corners)}: there "
-                   f"the tools are up to {off:.3g} mm off the part's sharp corners"]
+    return (f"fillets of faces {spans(own)}, which end in mitres, led around {len(points)} corners, by "
+            f"{fillets.in_words(sharp.edges[edge] for edge in sharp.corners)}: there the tools are up to {off:.3g} mm "
+            "off the part's sharp corners")
 
 
 def faces_of(gmsh: Any, edge: int) -> list[int]:
@@ -84,10 +90,14 @@ def middle_of(gmsh: Any, edge: int) -> np.ndarray:
 
 
 def angle_at(gmsh: Any, edge: int, part: float) -> float:
-    """Return the angle between the tangent planes of the two faces of an edge at a part of it, degrees, up to 90."""
+    """Return the angle between the tangent planes of the two faces of an edge at a part of it, degrees, up to 90; that
+    if an edge has no curve on a face."""
     at = parameter(gmsh, edge, part)
-    first, second = (gmsh.model.getNormal(face, gmsh.model.reparametrizeOnSurface(1, edge, at, face))
-                     for face in faces_of(gmsh, edge))
+    try:
+        first, second = (gmsh.model.getNormal(face, gmsh.model.reparametrizeOnSurface(1, edge, at, face))
+                         for face in faces_of(gmsh, edge))
+    except Exception:  # Gmsh raises nothing more specific
+        return 90.0
     return float(np.degrees(np.arccos(min(abs(np.dot(first, second)), 1.0))))
 
 

@@ -12,7 +12,7 @@ from dd3.tools.division import OPTIONS
 
 # Elements along an outer straight side at least.
 ALONG = 4
-# What is tried, one after the other, until a mesh keeps to its borders: parts of the size; and of each Gmsh's numbers of
+# What is tried, one after the other, until a mesh keeps to its borders: parts of the size; of each, Gmsh's numbers of
 # the pairing of triangles, by Blossom or a simple one, and of the exchange and shift of elements.
 SMALLER, RECOMBINED = (1.0, 0.7, 0.5), ((1, 5), (1, 0), (0, 0))
 # Relative difference of equal areas.

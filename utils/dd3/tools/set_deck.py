@@ -8,7 +8,7 @@ import numpy as np
 from dd3.curve import write_curves
 from dd3.tools import set_material
 from dd3.tools.beads import Beads
-from dd3.tools.pad_force import Pin
+from dd3.tools.pad_force import Pin, axes_of
 from dd3.tools.set_blank import Blank
 from dd3.tools.settings import ToolSettings
 from dd3.tools.tool_set import ToolSet
@@ -194,10 +194,7 @@ def pair(values: np.ndarray) -> str:
 
 def pinned(pins: Sequence[Pin]) -> str:
     """Return the supports of locating pins: the first one holds the blank, the second one against a turn about that."""
-    fixed = ["x y"]
-    if len(pins) > 1:
-        apart = np.abs(pins[1].place - pins[0].place)
-        fixed.append("y" if apart[0] > apart[1] else "x")
+    fixed = [" ".join("xy"[axis] for axis in axes) for axes in axes_of(pins)]
     return "".join(PIN.format(words=pin.words, number=number, place=pair(pin.place), fixed=axes,
                               diameter=pin.diameter)
                    for number, (pin, axes) in enumerate(zip(pins, fixed), 1))
@@ -218,7 +215,8 @@ def notes(options: ToolSettings, tools: ToolSet) -> list[tuple[str, str]]:
     lines = []
     if "pad" in tools.surfaces:
         area = tools.area["pad"]
-        force, by = ((tools.pad_force, "holds the floor by friction") if tools.pad_force else
+        force, by = ((tools.pad_force, "leaves to the pins what their holes bear" if tools.pad_for_pins
+                      else "holds the floor by friction") if tools.pad_force else
                      (PRESSURE * area, "by that pressure; what holds the floor is not estimated without the program"))
         lines.append(("pad", f"{force:.3g} N, {force / area:.2g} MPa, {by}"))
         lines += [("pin", f"in the hole {pin.words} at x y {pair(np.round(pin.place, 3))}: pierce the blank there")

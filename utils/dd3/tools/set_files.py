@@ -129,13 +129,15 @@ def beads_of(tools: tool_set.ToolSet, options: ToolSettings) -> beads.Beads:
 
 
 def set_pad_force(tools: tool_set.ToolSet, options: ToolSettings) -> None:
-    """Set the force of the pad, which is not less than by its pressure, if there is the program."""
+    """Set the force of the pad if there is the program: by what holds the floor, by what the pins bear, and not less
+    than by its pressure."""
     program = program_of(options)
     if program:
-        least = set_deck.PRESSURE * tools.area["pad"]
-        tools.pad_force = max(least, pad_force.needed(tools, set_material.stress_of(program, options.material),
-                                                      set_deck.PRESSURE * tools.area.get("holder", 0.0), options,
-                                                      set_deck.FRICTION))
+        stress, holder = set_material.stress_of(program, options.material), tools.area.get("holder", 0.0)
+        given = tools, stress, set_deck.PRESSURE * holder, options, set_deck.FRICTION
+        of_pins = pad_force.with_pins(*given)
+        tools.pad_force = max(set_deck.PRESSURE * tools.area["pad"], pad_force.needed(*given), of_pins)
+        tools.pad_for_pins = tools.pad_force == of_pins
 
 
 def draw_in_of(run: Path) -> tuple[np.ndarray, np.ndarray]:

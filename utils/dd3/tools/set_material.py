@@ -21,12 +21,14 @@ STEEL = f"""# Replace this by your material; dd3 identify makes one from measure
   yield = von_mises
   hardening = swift K=530 Y0=150 n=0.22"""
 ELASTIC = 2.1e5, 0.3  # of that steel
-# Strain up to which the stress in plane strain is taken, and its steps.
+# Strain up to which the stress in plane strain is taken, and its steps; before, fine ones up to where the sheet yields.
 STRAIN, STEPS = 1.0, 200
+FIRST, FIRST_STEPS = 0.01, 20
 POINT = """
 *POINT tension
   material = {material}
   control = e11 e22 s33 s12 s23 s13
+  target = {first} 0 0 0 0 0 steps={first_steps}
   target = {strain} 0 0 0 0 0 steps={steps}
 """
 
@@ -106,7 +108,8 @@ def warnings(path: Path | None) -> list[str]:
 
 def stress_of(program: Path, path: Path | None) -> Callable[[float], float]:
     """Return the stress by the strain in plane strain along x, MPa, of a material, by the program."""
-    done, points = run_points(program, text_of(path) + POINT.format(material=name_of(path), strain=STRAIN, steps=STEPS))
+    done, points = run_points(program, text_of(path) + POINT.format(
+        material=name_of(path), first=FIRST, first_steps=FIRST_STEPS, strain=STRAIN, steps=STEPS))
     if "tension" not in points:
         raise Problem(f"the stress of the material is not found: {done.errors.strip()}")
     strain, stress = ([row[column] for row in points["tension"]] for column in ("e11", "s11"))
