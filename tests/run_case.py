@@ -37,6 +37,7 @@ A case is a deck that says in comment lines what is expected (case_file.py), or 
 """
 import functools
 import pathlib
+import re
 import shutil
 import sys
 
@@ -53,6 +54,8 @@ KNOWN = {"deck", "arguments", "exit_code", "reference", "along", "tolerance", "l
          "description"}
 REFUSED = (1, 2)  # exit codes of a run that was not begun
 TRACES = ("Backtrace", "SIGSEGV", "SIGABRT", "SIGFPE", "runtime error", "At line", "ERROR STOP", "Sanitizer")
+CODE = re.compile(r"\b(?:warning|note|error|stopped) ([A-Z]\d{3}): ")
+LISTED = re.compile(r"^\| ([A-Z]\d{3}) \|", re.MULTILINE)
 
 
 class Mismatch(Exception):
@@ -180,8 +183,8 @@ def variants(case):
         yield {**case, **own}, further
 
 
-def check_output(case, done, results):
-    """Check exit code, output and files of a run."""
+def check_output(case, done, results, program):
+    """Check exit code, output, codes of messages and files of a run."""
     expected = case.get("exit_code", 0)
     if done.code != expected:
         raise Mismatch(f"exit code {done.code}, expected {expected}")
@@ -200,8 +203,17 @@ def check_output(case, done, results):
     for name in case.get("files", [] if expected in REFUSED else ["history.csv", "status.csv", "job.log"]):
         if not (results / name).exists():
             raise Mismatch(f"{name} was not written")
+    unlisted = set(CODE.findall(done.output + done.errors)) - listed_codes(program)
+    if unlisted:
+        raise Mismatch(f"codes that dd3imp --help messages does not list: {', '.join(sorted(unlisted))}")
     if expected in (0, 3):
         check_codes(case, check_description(results, expected))
+
+
+@functools.cache
+def listed_codes(program):
+    """Return the codes of the messages that the program lists."""
+    return set(LISTED.findall(launch([program, "--help", "messages"]).output))
 
 
 def check_codes(case, found):
@@ -234,7 +246,7 @@ def run(case, folder, program, results, arguments, first):
     print(" ".join(words), flush=True)
     done = launch(words, timeout=case.get("timeout", SECONDS), folder=place, one_core=False)
     print("\n".join((done.output + done.errors).splitlines()[-40:]))
-    check_output(case, done, results)
+    check_output(case, done, results, program)
     if place != results.parent and set(place.rglob("*")) != before:
         raise Mismatch(f"files are left: {sorted(set(place.rglob('*')) - before)}")
     compared, path = sum(len(case.get(key, [])) for key in ("contains", "printed", "codes")), results / "history.csv"

@@ -4,16 +4,17 @@ module dd3_app_law_help
   use dd3_base_text, only : newline, same_name
   use dd3_input_help, only : describe_key, escaped
   use dd3_material_check, only : describe_laws, law_backstress, law_hardening, law_modulus, &
-      law_yield
+      law_rate, law_yield
   use dd3_material_description, only : description_t
   implicit none
   private
   public :: help_laws, help_law, law_reference_markdown
 
   !> Kinds of laws, and their keys in the input.
-  integer, parameter :: kinds(4) = [law_yield, law_hardening, law_backstress, law_modulus]
-  character(len=10), parameter :: keys(4) = [character(len=10) :: "yield", "hardening", &
-      "backstress", "modulus"]
+  integer, parameter :: kinds(5) = [law_yield, law_hardening, law_backstress, law_modulus, &
+      law_rate]
+  character(len=10), parameter :: keys(5) = [character(len=10) :: "yield", "hardening", &
+      "backstress", "modulus", "rate"]
   !> Width of the column of names, in characters.
   integer, parameter :: name_width = 18
 

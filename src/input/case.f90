@@ -163,6 +163,8 @@ module dd3_input_case
     type(law_spec_t) :: yield, hardening
     !> Law of the modulus; without a name for a constant one.
     type(law_spec_t) :: modulus
+    !> Law of the strain rate; without a name for none.
+    type(law_spec_t) :: rate
     !> t/mm3; 0 if not given.
     real(wp) :: density = 0.0_wp
     !> Size 0 without a back-stress.
@@ -336,6 +338,8 @@ module dd3_input_case
     logical :: unload = .false.
     !> Whether the state at the end is kept for other runs.
     logical :: keep = .false.
+    !> Duration, s, and mean speed of the controlling tool, mm/s; 0 if not given.
+    real(wp) :: duration = 0.0_wp, speed = 0.0_wp
     !> Tools held, and tools that are withdrawn.
     type(tool_name_t), allocatable :: hold(:), release(:)
     !> Tools moved, and tools pressed.

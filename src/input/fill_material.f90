@@ -37,6 +37,10 @@ contains
     if (block%has("modulus")) then
       call fill_law(material%modulus, block%entry(block%find("modulus")), block%folder)
     end if
+    material%rate%name = ""
+    if (block%has("rate")) then
+      call fill_law(material%rate, block%entry(block%find("rate")), block%folder)
+    end if
     allocate (material%backstress(0))
     do i = 1, block%n_entry
       if (block%entry(i)%key /= "backstress" .or. .not. block%entry(i)%valid) cycle

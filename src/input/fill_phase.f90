@@ -42,6 +42,8 @@ contains
     if (block%has("trial")) phase%trial = block%number("trial")
     phase%unload = block%number("unload") > 0.5_wp
     phase%keep = block%number("keep") > 0.5_wp
+    if (block%has("duration")) phase%duration = block%number("duration")
+    if (block%has("speed")) phase%speed = block%number("speed")
     call fill_entries(phase, case, block)
     phase%has_gravity = block%has("gravity")
     if (phase%has_gravity) phase%gravity = block%numbers("gravity")

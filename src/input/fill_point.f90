@@ -38,6 +38,7 @@ contains
       k = k + 1
       call fill_goal(point%goal(k), block%entry(i))
     end do
+    if (block%has("duration")) call fill_durations(point%goal, block%numbers("duration"))
   end subroutine fill_point
 
   !> Whether an entry is a valid target.
@@ -59,6 +60,19 @@ contains
     goal%steps = nint(entry%number(last))
     goal%at = entry%value(1)%at
   end subroutine fill_goal
+
+  !> Set the times of the targets; those without one keep none.
+  pure subroutine fill_durations(goal, duration)
+    type(point_goal_t), intent(inout) :: goal(:)
+    !> One for each target, or one for all, s.
+    real(wp), intent(in) :: duration(:)
+
+    integer :: n
+
+    n = min(size(goal), size(duration))
+    goal(:n)%duration = duration(:n)
+    if (size(duration) == 1) goal%duration = duration(1)
+  end subroutine fill_durations
 
   !> Return the directions of the sheet as columns, with x at an angle (radians) from the rolling
   !> direction.

@@ -142,6 +142,9 @@ contains
           "back-stress law and its parameters, or none; several are summed", repeatable=.true.), &
       row("modulus", kind_law, "", "none", &
           "law of Young's modulus over the plastic strain and its parameters; none: constant"), &
+      row("rate", kind_law, "", "none", &
+          "law of the strain rate and its parameters: a factor on the flow stress; none: "// &
+          "independent of the rate"), &
       row("density", kind_real, "t/mm3", "-", "density, for gravity; 7.85e-9 for steel", &
           lower=zero, lower_open=.true.), &
       row("rolling_direction", kind_reals, "", "1 0 0", "rolling direction in the initial sheet", &
@@ -307,6 +310,10 @@ contains
       row("trial", kind_real, "", "", &
           "trial increment: mm of the controlling tool, or fraction of the phase for load", &
           lower=zero, lower_open=.true.), &
+      row("duration", kind_real, "s", "-", "time of the phase, for laws of the strain rate", &
+          lower=zero, lower_open=.true.), &
+      row("speed", kind_real, "mm/s", "-", "mean speed of the controlling tool, in place of "// &
+          "duration", lower=zero, lower_open=.true.), &
       row("hold", kind_other, "", "-", "tool that does not move", repeatable=.true., &
           form="tool"), &
       row("move", kind_other, "mm", "-", "displacement of a tool over the phase", &
@@ -414,7 +421,9 @@ contains
       row("gradient", kind_other, "", "-", &
           "deformation gradient F11 F12 F13 F21 ... F33 from the initial state, reached "// &
           "linearly in the number of steps", repeatable=.true., &
-          form="number number number number number number number number number steps = count")]
+          form="number number number number number number number number number steps = count"), &
+      row("duration", kind_reals, "s", "-", "time of each target or gradient, or one time for "// &
+          "each of them, for laws of the strain rate", count=0, lower=zero, lower_open=.true.)]
   end function point_keys
 
 end module dd3_input_keys

@@ -39,6 +39,7 @@ contains
       call check_actions(case, case%phase(i), motion, force, errors)
       call check_control(case, case%phase(i), errors)
       call check_trial(case%phase(i), errors)
+      call check_time(case%phase(i), errors)
       call check_until(case, case%phase(i), motion, errors)
       call check_motions(case%phase(i), errors)
       call check_tilts(case, case%phase(i), motion == pressed, tilting, errors)
@@ -413,6 +414,21 @@ contains
       end if
     end do
   end subroutine check_loads
+
+  !> Check that the time of a phase is given once, and a speed for a tool that moves.
+  subroutine check_time(phase, errors)
+    type(phase_spec_t), intent(in) :: phase
+    type(error_list_t), intent(inout) :: errors
+
+    if (.not. phase%speed > 0.0_wp) return
+    if (phase%duration > 0.0_wp) then
+      call errors%push_input(phase%source%at("speed"), "both duration and speed are given", &
+          "one of them", code="E164")
+    else if (.not. any(phase%move%tool == phase%control)) then
+      call errors%push_input(phase%source%at("speed"), "the phase has no controlling tool with "// &
+          "a `move`", "duration = seconds", code="E164")
+    end if
+  end subroutine check_time
 
   !> Check the condition that ends the phase early.
   subroutine check_until(case, phase, motion, errors)

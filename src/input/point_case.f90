@@ -18,6 +18,8 @@ module dd3_input_point_case
     real(wp), allocatable :: value(:)
     !> Number of equal steps.
     integer :: steps = 1
+    !> Time of all steps, s; 0 if not given.
+    real(wp) :: duration = 0.0_wp
     type(location_t) :: at
   end type point_goal_t
 

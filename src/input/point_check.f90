@@ -4,7 +4,7 @@
 module dd3_input_point_check
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t
-  use dd3_base_text, only : join, lower_case, to_text, upper_case
+  use dd3_base_text, only : join, lower_case, same_name, to_text, upper_case
   use dd3_input_case, only : case_t, point_spec_t, gradient_values
   implicit none
   private
@@ -40,6 +40,7 @@ contains
       call check_drive(case%point(i), errors)
       if (errors%count > before) cycle
       call check_goals(case%point(i), errors)
+      call check_durations(case, case%point(i), errors)
     end do
   end subroutine check_points
 
@@ -137,6 +138,29 @@ contains
       end if
     end do
   end subroutine check_goals
+
+  !> Check the times of the targets, which a law of the strain rate needs.
+  subroutine check_durations(case, point, errors)
+    type(case_t), intent(in) :: case
+    type(point_spec_t), intent(in) :: point
+    type(error_list_t), intent(inout) :: errors
+
+    integer :: n
+
+    associate (block => point%source)
+      if (block%has("duration")) then
+        n = size(block%numbers("duration"))
+        if (n /= 1 .and. n /= size(point%goal)) call errors%push_input(block%at("duration"), &
+            to_text(n)//" times are given, and "//to_text(size(point%goal))//" targets", &
+            "one time for all, or one for each", code="E164")
+      else if (case%material(point%material)%source%has("rate")) then
+        if (same_name(case%material(point%material)%rate%name, "none")) return
+        call errors%push_input(block%opened, "the point '"//block%called()// &
+            "' has no time, but its material has a law of the strain rate", &
+            "duration = seconds of each target", code="E163")
+      end if
+    end associate
+  end subroutine check_durations
 
   !> Check that the volume stays positive on the path to gradient i.
   subroutine check_gradient(point, i, from, errors)

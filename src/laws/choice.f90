@@ -7,16 +7,17 @@ module dd3_laws_choice
   use dd3_input_case, only : law_spec_t
   use dd3_input_law, only : check_law_name, check_law_values
   use dd3_material_check, only : check_together, known_laws, law_backstress, law_modulus, &
-      law_rows
+      law_rate, law_rows
   use dd3_material_description, only : law_choice_t, problem_t
   implicit none
   private
   public :: choose_checked, choose_law
 
   !> Names of the kinds of laws in messages.
-  character(len=18), parameter :: kind_name(4) = [character(len=18) :: "yield criterion", &
-      "hardening law", "back-stress law", "law of the modulus"]
-  !> Input word for no back-stress and for a constant modulus.
+  character(len=22), parameter :: kind_name(5) = [character(len=22) :: "yield criterion", &
+      "hardening law", "back-stress law", "law of the modulus", "law of the strain rate"]
+  !> Kinds of laws that a material may lack, and the input word for that.
+  integer, parameter :: optional_kind(3) = [law_backstress, law_modulus, law_rate]
   character(len=24), parameter :: no_law = "none"
 
 contains
@@ -70,7 +71,7 @@ contains
     integer :: position
 
     call known_laws(kind, names)
-    if (kind == law_backstress .or. kind == law_modulus) names = [names, no_law]
+    if (any(kind == optional_kind)) names = [names, no_law]
     call check_law_name(spec, trim(kind_name(kind)), names, position, errors)
     if (position == 0) return
     choice%name = names(position)

@@ -7,7 +7,8 @@ module dd3_laws_material
   use dd3_base_text, only : to_text
   use dd3_input_case, only : material_spec_t
   use dd3_laws_choice, only : choose_checked
-  use dd3_material_check, only : law_backstress, law_hardening, law_modulus, law_yield
+  use dd3_material_check, only : law_backstress, law_hardening, law_modulus, law_rate, &
+      law_yield
   use dd3_material_description, only : law_choice_t
   use dd3_material_material, only : material_t, new_material
   implicit none
@@ -25,7 +26,7 @@ contains
     !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
 
-    type(law_choice_t) :: yield, hardening, modulus
+    type(law_choice_t) :: yield, hardening, modulus, rate
     type(law_choice_t), allocatable :: backstress(:)
     type(digest_t) :: digest
     integer :: found, i
@@ -40,10 +41,11 @@ contains
       call choose_checked(law_backstress, spec%backstress(i), backstress(i), errors)
     end do
     if (spec%source%has("modulus")) call choose_checked(law_modulus, spec%modulus, modulus, errors)
+    if (spec%source%has("rate")) call choose_checked(law_rate, spec%rate, rate, errors)
     if (errors%count > found .or. .not. spec%source%valid) return
     if (yield%name == "" .or. hardening%name == "") return
     call new_material(material, spec%young, spec%poisson, yield, hardening, backstress, &
-        modulus)
+        modulus, rate)
     call check_modulus(material, spec, errors)
     if (errors%count > found) return
     call digest%add([spec%young, spec%poisson])
@@ -53,6 +55,7 @@ contains
       call add_law(digest, backstress(i))
     end do
     if (material%laws%softens) call add_law(digest, modulus)
+    if (material%laws%viscous) call add_law(digest, rate)
     check_sum = digest%value()
   end subroutine make_material
 

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Common access to the four registries: the descriptions of the laws and the check of the values
+!> Common access to the registries: the descriptions of the laws and the check of the values
 !> given to one.
 module dd3_material_check
   use dd3_base_parameter, only : parameter_t, law_value_t
@@ -10,17 +10,19 @@ module dd3_material_check
   use dd3_material_hardening_registry, only : describe_hardenings, find_hardening
   use dd3_material_modulus_law, only : modulus_slot_t
   use dd3_material_modulus_registry, only : describe_moduli, find_modulus
+  use dd3_material_rate_law, only : rate_slot_t
+  use dd3_material_rate_registry, only : describe_rates, find_rate
   use dd3_material_yield_criterion, only : yield_slot_t
   use dd3_material_yield_convexity, only : check_convexity
   use dd3_material_yield_registry, only : describe_criteria, find_criterion
   implicit none
   private
-  public :: law_yield, law_hardening, law_backstress, law_modulus
+  public :: law_yield, law_hardening, law_backstress, law_modulus, law_rate
   public :: describe_laws, known_laws, law_rows, check_together
 
   !> The kinds of laws.
   integer, parameter :: law_yield = 1, law_hardening = 2, law_backstress = 3, &
-      law_modulus = 4
+      law_modulus = 4, law_rate = 5
 
 contains
 
@@ -37,8 +39,10 @@ contains
       call describe_hardenings(descriptions)
     case (law_backstress)
       call describe_backstresses(descriptions)
-    case default
+    case (law_modulus)
       call describe_moduli(descriptions)
+    case default
+      call describe_rates(descriptions)
     end select
   end subroutine describe_laws
 
@@ -94,6 +98,7 @@ contains
     type(hardening_slot_t) :: hardening
     type(backstress_slot_t) :: backstress
     type(modulus_slot_t) :: modulus
+    type(rate_slot_t) :: rate
     integer :: before
 
     before = 0
@@ -113,9 +118,12 @@ contains
     case (law_backstress)
       call find_backstress(name, backstress)
       call backstress%law%check(values, problems)
-    case default
+    case (law_modulus)
       call find_modulus(name, modulus)
       call modulus%law%check(values, problems)
+    case default
+      call find_rate(name, rate)
+      call rate%law%check(values, problems)
     end select
     problems = problems(before + 1:)
   end subroutine check_together

@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> The laws of a material: elasticity, a criterion, a hardening law, any number of back-stresses,
-!> which add up, and possibly a law of Young's modulus. The internal variables of a point are the
-!> equivalent plastic strain, six components of each back-stress, then those of the hardening law.
+!> which add up, and possibly laws of Young's modulus and of the strain rate. The internal variables
+!> of a point are the equivalent plastic strain, six components of each back-stress, those of the
+!> hardening law, then the rate of the plastic strain if the flow stress depends on it.
 module dd3_material_composition
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
@@ -11,12 +12,13 @@ module dd3_material_composition
   use dd3_material_flow, only : flow_direction_t, flow_response_t, back_response_t
   use dd3_material_hardening_law, only : hardening_t
   use dd3_material_modulus_law, only : modulus_slot_t
+  use dd3_material_rate_law, only : rate_slot_t
   use dd3_material_yield_criterion, only : yield_criterion_t
   implicit none
   private
   public :: composition_t, complete, describe_internal_variables
-  public :: stiffness_ratio, back_stress_of, flow_response_of, add_back_stresses
-  public :: evolve_internal_variables
+  public :: stiffness_ratio, back_stress_of, flow_stress_after, flow_response_of, apply_rate
+  public :: add_back_stresses, evolve_internal_variables
 
   !> The laws of a material.
   type :: composition_t
@@ -26,10 +28,14 @@ module dd3_material_composition
     type(backstress_slot_t), allocatable :: backstress(:)
     !> Not allocated for a constant modulus.
     type(modulus_slot_t) :: modulus
+    !> Not allocated for a flow stress that does not depend on the rate.
+    type(rate_slot_t) :: rate
     !> Number of internal variables of a point.
     integer :: n_internal = 1
     !> Indices of the hardening law's first and last own internal variable.
     integer :: first = 2, last = 1
+    !> Index of the rate of the plastic strain; 0 if there is none.
+    integer :: at_rate = 0
     !> Whether there is a back-stress of any kind.
     logical :: kinematic = .false.
     !> Whether neither back-stress nor flow stress depends on the direction of flow: the matrix of
@@ -37,6 +43,8 @@ module dd3_material_composition
     logical :: symmetric = .true.
     !> Whether Young's modulus falls with the plastic strain.
     logical :: softens = .false.
+    !> Whether the flow stress depends on the strain rate.
+    logical :: viscous = .false.
   end type composition_t
 
 contains
@@ -48,6 +56,11 @@ contains
     self%first = 2 + 6*size(self%backstress)
     self%last = self%first + self%hardening%n_internal - 1
     self%n_internal = self%last
+    self%viscous = allocated(self%rate%law)
+    if (self%viscous) then
+      self%n_internal = self%n_internal + 1
+      self%at_rate = self%n_internal
+    end if
     self%kinematic = size(self%backstress) > 0 .or. self%hardening%owns_back_stress
     self%softens = allocated(self%modulus%law)
     self%symmetric = .not. (self%kinematic .or. self%hardening%path_dependent)
@@ -71,6 +84,8 @@ contains
     end do
     call self%hardening%describe_internal_variables(own)
     rows = [rows, own]
+    if (self%viscous) rows = [rows, internal_variable_t("plastic_strain_rate", "1/s", &
+        "rate of the equivalent plastic strain in the last increment", 1)]
     rows(1)%first = 1
     do i = 2, size(rows)
       rows(i)%first = rows(i - 1)%first + rows(i - 1)%n_component
@@ -137,19 +152,63 @@ contains
     end if
   end function back_stress_of
 
-  !> Evaluate the flow stress of a state and its slope.
-  pure subroutine flow_response_of(self, internal_variables, flow)
+  !> Evaluate the flow stress of a state and its slope at a constant rate, that of the state; with a
+  !> frequency, at rest.
+  pure subroutine flow_response_of(self, internal_variables, frequency, flow)
     type(composition_t), intent(in) :: self
     real(wp), intent(in) :: internal_variables(self%n_internal)
+    !> As for `flow_stress_after`.
+    real(wp), intent(in) :: frequency
     type(flow_response_t), intent(out) :: flow
 
     type(flow_direction_t) :: direction
 
     ! Other laws ignore the direction, and filling it takes longer than their flow stress.
     if (self%hardening%path_dependent) direction = no_direction()
-    call self%hardening%flow_stress(internal_variables(1), &
-        internal_variables(self%first:self%last), 0.0_wp, direction, flow)
+    call flow_stress_after(self, internal_variables, 0.0_wp, frequency, direction, flow)
   end subroutine flow_response_of
+
+  !> Evaluate the flow stress at the end of a plastic increment with its derivatives.
+  pure subroutine flow_stress_after(self, start, increment, frequency, direction, flow)
+    type(composition_t), intent(in) :: self
+    !> Internal variables at the start.
+    real(wp), intent(in) :: start(self%n_internal)
+    real(wp), intent(in) :: increment
+    !> Inverse of the time of the increment, 1/s; 0 without a time: the rate is that of the start.
+    real(wp), intent(in) :: frequency
+    !> The criterion at the effective stress of the end.
+    type(flow_direction_t), intent(in) :: direction
+    type(flow_response_t), intent(out) :: flow
+
+    call self%hardening%flow_stress(start(1), start(self%first:self%last), increment, direction, &
+        flow)
+    if (self%viscous) call apply_rate(self, start, increment, frequency, flow)
+  end subroutine flow_stress_after
+
+  !> Multiply the flow stress of the hardening law by the factor of the strain rate; arguments as
+  !> for `flow_stress_after`.
+  pure subroutine apply_rate(self, start, increment, frequency, flow)
+    type(composition_t), intent(in) :: self
+    real(wp), intent(in) :: start(self%n_internal), increment, frequency
+    type(flow_response_t), intent(inout) :: flow
+
+    real(wp) :: factor, slope
+
+    call self%rate%law%factor(rate_after(self, start, increment, frequency), factor, slope)
+    flow%slope = factor*flow%slope + flow%value*slope*frequency
+    flow%gradient = factor*flow%gradient
+    flow%value = factor*flow%value
+  end subroutine apply_rate
+
+  !> Return the rate of the plastic strain over an increment, 1/s; arguments as for
+  !> `flow_stress_after`.
+  pure real(wp) function rate_after(self, start, increment, frequency)
+    type(composition_t), intent(in) :: self
+    real(wp), intent(in) :: start(self%n_internal), increment, frequency
+
+    rate_after = start(self%at_rate)
+    if (frequency > 0.0_wp) rate_after = increment*frequency
+  end function rate_after
 
   !> Evaluate the sum of the back-stresses at the end of a plastic increment.
   pure subroutine add_back_stresses(self, start, increment, direction, total)
@@ -173,13 +232,16 @@ contains
     end do
   end subroutine add_back_stresses
 
-  !> Evolve the internal variables over a plastic increment.
-  pure subroutine evolve_internal_variables(self, start, increment, direction, evolved)
+  !> Evolve the internal variables over an increment.
+  pure subroutine evolve_internal_variables(self, start, increment, frequency, direction, evolved)
     type(composition_t), intent(in) :: self
     !> Internal variables at the start.
     real(wp), intent(in) :: start(self%n_internal)
+    !> Plastic increment; 0 for an elastic one.
     real(wp), intent(in) :: increment
-    !> The criterion at the effective stress of the end.
+    !> As for `flow_stress_after`.
+    real(wp), intent(in) :: frequency
+    !> The criterion at the effective stress of the end; not used for an elastic increment.
     type(flow_direction_t), intent(in) :: direction
     !> Internal variables at the end.
     real(wp), intent(out) :: evolved(self%n_internal)
@@ -187,6 +249,9 @@ contains
     type(back_response_t) :: back
     integer :: i
 
+    evolved = start
+    if (self%viscous) evolved(self%at_rate) = rate_after(self, start, increment, frequency)
+    if (.not. increment > 0.0_wp) return
     evolved(1) = start(1) + increment
     do i = 1, size(self%backstress)
       call self%backstress(i)%law%back_stress(start(6*i - 4:6*i + 1), increment, direction, back)

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> A material: elasticity, yield criterion, hardening law, back-stresses and possibly a law of the
-!> modulus, evaluated at a point.
+!> A material: elasticity, yield criterion, hardening law, back-stresses and possibly laws of the
+!> modulus and of the strain rate, evaluated at a point.
 !> All tensors are Kelvin vectors in the orthotropy axes.
 module dd3_material_material
   use dd3_base_kinds, only : wp
@@ -8,7 +8,8 @@ module dd3_material_material
       verdict_impossible, cause_large_strain, cause_none, cause_not_finite, cause_return_mapping
   use dd3_material_backstress_registry, only : find_backstress
   use dd3_material_composition, only : composition_t, add_back_stresses, back_stress_of, complete, &
-      stiffness_ratio, flow_response_of, describe_composition => describe_internal_variables
+      stiffness_ratio, flow_response_of, flow_stress_after, &
+      describe_composition => describe_internal_variables
   use dd3_material_description, only : internal_variable_t, law_choice_t
   use dd3_material_elasticity, only : elastic_stress, new_elasticity, &
       strain_of => elastic_strain
@@ -16,6 +17,7 @@ module dd3_material_material
   use dd3_material_hardening_law, only : hardening_slot_t
   use dd3_material_hardening_registry, only : find_hardening
   use dd3_material_modulus_registry, only : find_modulus
+  use dd3_material_rate_registry, only : find_rate
   use dd3_material_return_mapping, only : step_t
   use dd3_material_update, only : substeps_t, integrate, differentiate, all_finite
   use dd3_material_yield_criterion, only : yield_slot_t
@@ -29,7 +31,7 @@ module dd3_material_material
     !> Young's modulus, MPa.
     real(wp) :: young = 0.0_wp
     !> Number of internal variables of a point: equivalent plastic strain first, then six for each
-    !> back-stress, then the hardening law's own. All are initially zero.
+    !> back-stress, then the hardening law's own and the rate. All are initially zero.
     integer :: n_internal = 1
     !> Number of substeps of a strain increment before any failure.
     integer :: least_substeps = 1
@@ -53,7 +55,7 @@ module dd3_material_material
 contains
 
   !> Initialise a material with laws whose parameters have been checked.
-  subroutine new_material(self, young, poisson, criterion, hardening, backstress, modulus)
+  subroutine new_material(self, young, poisson, criterion, hardening, backstress, modulus, rate)
     type(material_t), intent(out) :: self
     !> Young's modulus, MPa; Poisson's ratio, above -1 and below 1/2.
     real(wp), intent(in) :: young, poisson
@@ -62,6 +64,8 @@ contains
     type(law_choice_t), intent(in) :: backstress(:)
     !> Law of the modulus; absent or with a name that is none of the registry for a constant one.
     type(law_choice_t), intent(in), optional :: modulus
+    !> Law of the strain rate, likewise.
+    type(law_choice_t), intent(in), optional :: rate
 
     type(yield_slot_t) :: found_criterion
     type(hardening_slot_t) :: found_hardening
@@ -84,6 +88,10 @@ contains
       call find_modulus(modulus%name, self%laws%modulus)
       if (allocated(self%laws%modulus%law)) call self%laws%modulus%law%set(modulus%values)
     end if
+    if (present(rate)) then
+      call find_rate(rate%name, self%laws%rate)
+      if (allocated(self%laws%rate%law)) call self%laws%rate%law%set(rate%values)
+    end if
     call complete(self%laws)
     self%n_internal = self%laws%n_internal
   end subroutine new_material
@@ -91,7 +99,7 @@ contains
   !> Integrate stress and internal variables over a strain increment in one step or, if that fails,
   !> in 2, 4 ... 64 substeps. If all fail, return the initial state with the elastic tangent.
   pure subroutine update(self, stress_committed, internal_committed, strain, stress, &
-      internal_variables, tangent, plastic, verdict)
+      internal_variables, tangent, plastic, verdict, time)
     class(material_t), intent(in) :: self
     !> Committed stress, MPa, and internal variables.
     real(wp), intent(in) :: stress_committed(6), internal_committed(self%n_internal)
@@ -105,6 +113,8 @@ contains
     logical, intent(out) :: plastic
     !> Iterations are those of the return mapping. Node, element and point are not changed.
     type(verdict_t), intent(inout) :: verdict
+    !> Time of the increment, s; 0, the default, for none: the strain rate is that of the state.
+    real(wp), intent(in), optional :: time
 
     type(substeps_t) :: substeps
     type(step_t) :: step
@@ -122,6 +132,7 @@ contains
       verdict%value(1) = maxval(abs(strain))
     else
       substeps%count = self%least_substeps
+      if (present(time)) substeps%time = time
       do while (substeps%count <= substep_limit)
         call integrate(self%laws, substeps, stress_committed, internal_committed, strain, &
             internal_variables, step)
@@ -147,7 +158,7 @@ contains
   end subroutine update
 
   !> Evaluate the tangent of the rate equations, for the predictor: elastic, or for plastic flow
-  !> C - CV (x) CV / (V.CV + Y' + V.dX/dp).
+  !> C - CV (x) CV / (V.CV + Y' + V.dX/dp). A strain rate stays that of the state.
   pure subroutine continuum_tangent(self, stress, internal_variables, plastic, tangent)
     class(material_t), intent(in) :: self
     !> Stress, MPa, and internal variables.
@@ -168,8 +179,7 @@ contains
     if (.not. plastic) return
     call self%laws%criterion%second_derivative(stress - self%back_stress(internal_variables), &
         direction)
-    call self%laws%hardening%flow_stress(internal_variables(1), &
-        internal_variables(self%laws%first:self%laws%last), 0.0_wp, direction, flow)
+    call flow_stress_after(self%laws, internal_variables, 0.0_wp, 0.0_wp, direction, flow)
     rate = ratio*elastic_stress(self%laws%elasticity, direction%gradient)
     modulus = dot_product(direction%gradient, rate) + flow%slope
     if (self%laws%kinematic) then
@@ -204,14 +214,14 @@ contains
     equivalent_stress = self%laws%criterion%value(stress - self%back_stress(internal_variables))
   end function equivalent_stress
 
-  !> Return the flow stress Y of a state, MPa.
+  !> Return the flow stress Y of a state at its strain rate, MPa.
   pure real(wp) function flow_stress(self, internal_variables)
     class(material_t), intent(in) :: self
     real(wp), intent(in) :: internal_variables(self%n_internal)
 
     type(flow_response_t) :: flow
 
-    call flow_response_of(self%laws, internal_variables, flow)
+    call flow_response_of(self%laws, internal_variables, 0.0_wp, flow)
     flow_stress = flow%value
   end function flow_stress
 

@@ -57,7 +57,7 @@ contains
   end function global_stress
 
   !> Drive a point on a straight path to a target.
-  pure subroutine drive_to_target(self, material, by_stress, target, verdict)
+  pure subroutine drive_to_target(self, material, by_stress, target, time, verdict)
     !> On failure, the state after the last step that converged.
     type(material_point_t), intent(inout) :: self
     type(material_t), intent(in) :: material
@@ -65,6 +65,8 @@ contains
     logical, intent(in) :: by_stress(6)
     !> Stress (MPa) or strain of each component at the end, Kelvin.
     real(wp), intent(in) :: target(6)
+    !> Time of the path, s; 0 for none.
+    real(wp), intent(in) :: time
     type(verdict_t), intent(out) :: verdict
 
     real(wp) :: start(6), done, fraction
@@ -76,7 +78,7 @@ contains
     halvings = 0
     do
       call drive_in_one_step(self, material, by_stress, &
-          start + min(1.0_wp, done + fraction)*(target - start), verdict)
+          start + min(1.0_wp, done + fraction)*(target - start), fraction*time, verdict)
       if (verdict%outcome == verdict_converged) then
         done = done + fraction
         if (done >= 1.0_wp) return
@@ -89,11 +91,13 @@ contains
   end subroutine drive_to_target
 
   !> Drive a point to a target in one step; on failure the state is unchanged.
-  pure subroutine drive_in_one_step(self, material, by_stress, target, verdict)
+  pure subroutine drive_in_one_step(self, material, by_stress, target, time, verdict)
     type(material_point_t), intent(inout) :: self
     type(material_t), intent(in) :: material
     logical, intent(in) :: by_stress(6)
     real(wp), intent(in) :: target(6)
+    !> Time of the step, s; 0 for none.
+    real(wp), intent(in) :: time
     type(verdict_t), intent(out) :: verdict
 
     type(material_point_t) :: trial
@@ -113,7 +117,7 @@ contains
       if (.not. regular) exit
       increment = increment + change*min(1.0_wp, longest/max(norm2(change), longest))
       call material%update(self%stress, self%internal_variables, matmul(increment, rotation), &
-          trial%stress, trial%internal_variables, tangent, trial%plastic, verdict)
+          trial%stress, trial%internal_variables, tangent, trial%plastic, verdict, time)
       if (verdict%outcome /= verdict_converged) return
       stress = global_stress(trial)
       change = merge(target - stress, target - self%strain - increment, by_stress)
@@ -169,7 +173,7 @@ contains
   end subroutine solve_mixed
 
   !> Apply a logarithmic strain increment to a point, then rotate its axes.
-  pure subroutine apply_strain(self, material, strain, rotation, verdict)
+  pure subroutine apply_strain(self, material, strain, rotation, time, verdict)
     !> Unchanged on failure.
     type(material_point_t), intent(inout) :: self
     type(material_t), intent(in) :: material
@@ -177,6 +181,8 @@ contains
     real(wp), intent(in) :: strain(6)
     !> Rotation that follows the stretch.
     real(wp), intent(in) :: rotation(3, 3)
+    !> Time of the increment, s; 0 for none.
+    real(wp), intent(in) :: time
     type(verdict_t), intent(out) :: verdict
 
     type(material_point_t) :: trial
@@ -185,7 +191,7 @@ contains
     trial = self
     call material%update(self%stress, self%internal_variables, &
         matmul(strain, kelvin_rotation(self%axes)), trial%stress, trial%internal_variables, &
-        tangent, trial%plastic, verdict)
+        tangent, trial%plastic, verdict, time)
     if (verdict%outcome /= verdict_converged) return
     trial%axes = matmul(rotation, self%axes)
     self = trial

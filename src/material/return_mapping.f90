@@ -15,7 +15,7 @@ module dd3_material_return_mapping
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : solve_small
   use dd3_material_composition, only : composition_t, back_stress_of, flow_response_of, &
-      add_back_stresses, stiffness_ratio
+      flow_stress_after, add_back_stresses, apply_rate, stiffness_ratio
   use dd3_material_elasticity, only : elastic_strain, elastic_stress
   use dd3_material_flow, only : flow_direction_t, flow_response_t, back_response_t
   implicit none
@@ -32,6 +32,9 @@ module dd3_material_return_mapping
   real(wp), parameter :: elastic_margin = 1.0e-12_wp
   !> Smallest pivot of the matrix scaled to order one by the shear modulus.
   real(wp), parameter :: smallest_pivot = 1.0e-6_wp
+  !> Smallest factor on the plastic increment in an iteration, where the flow stress depends on the
+  !> rate: its slope may be unbounded at an increment of zero.
+  real(wp), parameter :: least_part = 0.1_wp
   !> Unit vectors.
   real(wp), parameter :: unit(6, 6) = reshape([ &
     1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, &
@@ -45,6 +48,8 @@ module dd3_material_return_mapping
 
   !> A step and the quantities its derivatives need.
   type :: step_t
+    !> Inverse of the time of the step, 1/s; 0 without a time. Set before the integration.
+    real(wp) :: frequency
     !> Whether the step converged; whether plastic flow occurred.
     logical :: converged, plastic
     !> Newton iterations.
@@ -76,7 +81,8 @@ contains
     real(wp), intent(in) :: stress(6), start(laws%n_internal)
     !> Strain increment.
     real(wp), intent(in) :: strain(6)
-    type(step_t), intent(out) :: step
+    !> Its frequency is set.
+    type(step_t), intent(inout) :: step
 
     real(wp) :: effective(6), value
 
@@ -86,7 +92,7 @@ contains
     effective = step%trial
     if (laws%kinematic) effective = effective - back_stress_of(laws, start)
     value = laws%criterion%value(effective)
-    call flow_response_of(laws, start, step%flow)
+    call flow_response_of(laws, start, step%frequency, step%flow)
     step%overstress = value/step%flow%value
     step%iterations = 0
     step%norm = 0.0_wp
@@ -96,18 +102,20 @@ contains
     step%stress = step%trial
     if (.not. step%plastic) return
     if (step%overstress < 1 + near_surface) then
-      call start_by_normal(laws, effective, step)
+      call start_by_normal(laws, start, effective, step)
       call iterate(laws, start, step)
       if (step%converged) return
-      call flow_response_of(laws, start, step%flow)
+      call flow_response_of(laws, start, step%frequency, step%flow)
     end if
-    call start_radially(laws, effective, value, step)
+    call start_radially(laws, start, effective, value, step)
     call iterate(laws, start, step)
   end subroutine integrate_step
 
   !> Set the start near the surface: the first Newton iteration from the trial stress.
-  pure subroutine start_by_normal(laws, effective, step)
+  pure subroutine start_by_normal(laws, start, effective, step)
     type(composition_t), intent(in) :: laws
+    !> Internal variables at the start.
+    real(wp), intent(in) :: start(laws%n_internal)
     !> Trial stress less back-stress, MPa.
     real(wp), intent(in) :: effective(6)
     type(step_t), intent(inout) :: step
@@ -116,14 +124,16 @@ contains
 
     call laws%criterion%gradient(effective, value, normal)
     flow = step%stiffness*elastic_stress(laws%elasticity, normal)
-    modulus = dot_product(normal, flow) + max(step%flow%slope, 0.0_wp)
-    step%increment = (value - step%flow%value)/modulus
+    modulus = dot_product(normal, flow)
+    step%increment = first_increment(laws, start, effective, value, modulus, step)
     step%direction%stress = effective - step%increment*flow
   end subroutine start_by_normal
 
   !> Set the start far from the surface: a radial return, as for an isotropic material.
-  pure subroutine start_radially(laws, effective, value, step)
+  pure subroutine start_radially(laws, start, effective, value, step)
     type(composition_t), intent(in) :: laws
+    !> Internal variables at the start.
+    real(wp), intent(in) :: start(laws%n_internal)
     !> Trial stress less back-stress, MPa.
     real(wp), intent(in) :: effective(6)
     !> Its equivalent stress, MPa.
@@ -133,11 +143,47 @@ contains
     real(wp) :: modulus, mean
 
     modulus = 3*step%stiffness*laws%elasticity%shear
-    step%increment = (value - step%flow%value)/(modulus + max(step%flow%slope, 0.0_wp))
+    step%increment = first_increment(laws, start, effective, value, modulus, step)
     mean = (effective(1) + effective(2) + effective(3))/3
     step%direction%stress = (1 - modulus*step%increment/value)*effective
     step%direction%stress(1:3) = step%direction%stress(1:3) + mean*modulus*step%increment/value
   end subroutine start_radially
+
+  !> Return the plastic increment at which an equivalent stress that falls linearly meets the flow
+  !> stress: by its slope at the start or, where it depends on the rate and may rise at once, by
+  !> bisection.
+  pure real(wp) function first_increment(laws, start, effective, value, modulus, step) &
+      result(increment)
+    type(composition_t), intent(in) :: laws
+    !> Internal variables at the start.
+    real(wp), intent(in) :: start(laws%n_internal)
+    !> Trial stress less back-stress, its equivalent stress, and the fall of the latter per
+    !> increment, MPa.
+    real(wp), intent(in) :: effective(6), value, modulus
+    !> With the flow stress of the start.
+    type(step_t), intent(in) :: step
+
+    !> Reduction of the interval.
+    integer, parameter :: bisections = 20
+    type(flow_direction_t) :: direction
+    type(flow_response_t) :: flow
+    real(wp) :: above
+    integer :: i
+
+    if (.not. laws%viscous) then
+      increment = (value - step%flow%value)/(modulus + max(step%flow%slope, 0.0_wp))
+      return
+    end if
+    call laws%criterion%second_derivative(effective, direction)
+    increment = 0.0_wp
+    above = (value - step%flow%value)/modulus
+    do i = 1, bisections
+      above = 0.5_wp*above
+      call flow_stress_after(laws, start, increment + above, step%frequency, direction, flow)
+      if (flow%value < value - modulus*(increment + above)) increment = increment + above
+    end do
+    increment = increment + above
+  end function first_increment
 
   !> Iterate by Newton's method from `step%direction%stress` and `step%increment`.
   pure subroutine iterate(laws, start, step)
@@ -182,6 +228,7 @@ contains
     call laws%criterion%second_derivative(stress, step%direction)
     call laws%hardening%flow_stress(start(1), start(laws%first:laws%last), increment, &
         step%direction, step%flow)
+    if (laws%viscous) call apply_rate(laws, start, increment, step%frequency, step%flow)
     step%increment = increment
     step%stress = stress
     if (laws%kinematic) then
@@ -206,16 +253,18 @@ contains
     !> Whether there is one.
     logical, intent(out) :: accepted
 
-    real(wp) :: stress(6), increment, norm, fraction
+    real(wp) :: stress(6), increment, norm, fraction, least
     integer :: halving
 
     stress = step%direction%stress
     increment = step%increment
     norm = step%norm
     fraction = 1.0_wp
+    least = 0.0_wp
+    if (laws%viscous) least = least_part*increment
     do halving = 0, halving_limit
       call evaluate(laws, start, stress + fraction*change, &
-          max(0.0_wp, increment + fraction*change_of_increment), step)
+          max(least, increment + fraction*change_of_increment), step)
       accepted = step%norm < norm
       if (accepted) return
       fraction = 0.5_wp*fraction

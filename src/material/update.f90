@@ -12,6 +12,8 @@ module dd3_material_update
   !> Equal substeps of a strain increment.
   type :: substeps_t
     integer :: count = 1
+    !> Time of the whole increment, s; 0 without a time.
+    real(wp) :: time = 0.0_wp
     !> Derivatives in the whole strain of the stress, MPa, and of the plastic strain, carried from
     !> substep to substep; see `carries_derivatives`.
     real(wp) :: stress_slope(6, 6), plastic_slope(6)
@@ -38,12 +40,20 @@ contains
     if (substeps%count > 1) then
       call integrate_substeps(laws, substeps, stress, start, strain, internal_variables, step)
     else
+      step%frequency = frequency_of(substeps)
       call integrate_step(laws, stress, start, strain, step)
-      internal_variables = start
-      if (step%converged .and. step%plastic) call evolve_internal_variables(laws, start, &
-          step%increment, step%direction, internal_variables)
+      if (step%converged) call evolve_internal_variables(laws, start, step%increment, &
+          step%frequency, step%direction, internal_variables)
     end if
   end subroutine integrate
+
+  !> Return the inverse of the time of a substep, 1/s; 0 without a time.
+  pure real(wp) function frequency_of(substeps)
+    type(substeps_t), intent(in) :: substeps
+
+    frequency_of = 0.0_wp
+    if (substeps%time > 0.0_wp) frequency_of = real(substeps%count, wp)/substeps%time
+  end function frequency_of
 
   !> Integrate a strain increment in several substeps; stop at the first that fails.
   pure subroutine integrate_substeps(laws, substeps, stress, start, strain, internal_variables, &
@@ -62,12 +72,13 @@ contains
     substep_stress = stress
     substep_strain = strain/real(substeps%count, wp)
     internal_variables = start
+    step%frequency = frequency_of(substeps)
     do n = 1, substeps%count
       substep_start = internal_variables
       call integrate_step(laws, substep_stress, substep_start, substep_strain, step)
       if (.not. step%converged) return
       substep_stress = step%stress
-      if (step%plastic) call evolve_internal_variables(laws, substep_start, step%increment, &
+      call evolve_internal_variables(laws, substep_start, step%increment, step%frequency, &
           step%direction, internal_variables)
       if (carries_derivatives(laws)) call chain(laws, step, substeps)
     end do

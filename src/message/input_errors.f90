@@ -119,7 +119,13 @@ contains
           "run; `at = last`; the `*MATERIAL` of that run."), &
       row("E153", "cut of the sheet", "A curve of `*TRIM` is open, crosses another one, misses "// &
           "the sheet or is too small for its elements.", "Closed curves that are larger than "// &
-          "the elements; a finer mesh; `along`, `keep`.")]
+          "the elements; a finer mesh; `along`, `keep`."), &
+      row("E163", "strain rate without a time", "The flow stress depends on the strain rate, "// &
+          "but a phase, or a point, has no time.", "`duration` or `speed` in each "// &
+          "`*PHASE`, also in those of springback; `duration` in `*POINT`."), &
+      row("E164", "times", "The time of a phase or of a point is given twice, or for "// &
+          "something it does not have.", "`duration`; or `speed` where the controlling "// &
+          "tool has a `move`.")]
   end function of_job
 
 end module dd3_message_input_errors

@@ -49,6 +49,8 @@ module dd3_model_configuration
     real(wp) :: progress = 0.0_wp
     !> Path of the controlling tools since the start of the job, mm.
     real(wp) :: travel = 0.0_wp
+    !> Time since the start of the job, s; phases without a duration take none.
+    real(wp) :: time = 0.0_wp
     !> Upper bound of r after a cut-back.
     real(wp) :: r_cap = huge(1.0_wp)
     !> Last increments with a row in history.csv and with a step in fields.vtkhdf; -1 for none.

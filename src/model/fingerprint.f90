@@ -193,7 +193,7 @@ contains
 
     associate (phase => model%phase(number))
       call digest%add([phase%control, phase%until%kind, phase%until%tool])
-      call digest%add([phase%length, phase%until%value])
+      call digest%add([phase%length, phase%duration, phase%until%value])
       do tool = 1, model%n_tool
         call add_tool(digest, phase, tool, model%tool(tool)%name)
       end do

@@ -25,6 +25,8 @@ module dd3_model_phase
     real(wp) :: trial = 0.0_wp
     !> Path of the controlling tool over the phase, mm; 0 if loads control.
     real(wp) :: length = 0.0_wp
+    !> Time of the whole phase, s; 0 if none is given.
+    real(wp) :: duration = 0.0_wp
     !> Whether the phase sets gravity.
     logical :: has_gravity = .false.
     !> Whether this phase or an earlier one unloads the sheet, and no tool acts.

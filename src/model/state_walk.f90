@@ -25,6 +25,7 @@ contains
     call visitor%one_logical("begun", state%begun)
     call visitor%one_real("progress", state%progress)
     call visitor%one_real("travel", state%travel)
+    call visitor%one_real("time", state%time)
     call visitor%one_real("r_cap", state%r_cap)
     call visitor%one_integer("history_increment", state%history_increment)
     call visitor%one_integer("fields_increment", state%fields_increment)

@@ -103,6 +103,8 @@ contains
 
     names = "increment,phase,travel,progress"
     units = "-,-,mm,-"
+    if (has_time(model)) names = names//",time"
+    if (has_time(model)) units = units//",s"
     do i = 1, model%n_tool
       call add_vector(names, units, trim(model%tool(i)%name)//"_u", "mm")
       call add_vector(names, units, trim(model%tool(i)%name)//"_f", "N")
@@ -133,6 +135,13 @@ contains
     units = units//",-"
     text = "# units: "//units//newline//names//newline
   end function heading
+
+  !> Whether a phase has a duration.
+  pure logical function has_time(model)
+    type(model_t), intent(in) :: model
+
+    has_time = any(model%phase%duration > 0.0_wp)
+  end function has_time
 
   !> Add the columns of a vector.
   subroutine add_vector(names, units, prefix, unit)
@@ -190,6 +199,7 @@ contains
     call table%add_text(model%phase(state%phase)%name)
     call table%add_real(state%travel)
     call table%add_real(state%progress)
+    if (has_time(model)) call table%add_real(state%time)
     do i = 1, model%n_tool
       call table%add_reals(state%tools%displacement(:, i))
       call table%add_reals(state%tools%force(:, i))

@@ -20,6 +20,8 @@ module dd3_point_history
   type :: point_row_t
     !> Step of the point, from 0.
     integer :: increment = 0
+    !> Time since the start of the point, s.
+    real(wp) :: time = 0.0_wp
     !> Name of the point.
     character(len=:), allocatable :: point
     !> Logarithmic strain and stress (MPa) in global axes, Kelvin.
@@ -33,6 +35,8 @@ module dd3_point_history
   !> History of material points.
   type :: point_record_t
     type(table_t), private :: table
+    !> Whether there is a column of the time.
+    logical, private :: timed = .false.
   contains
     procedure :: open => point_open
     procedure :: write => point_write
@@ -42,24 +46,28 @@ module dd3_point_history
 contains
 
   !> Make the file with its two lines of heading.
-  subroutine point_open(self, directory, variables, error)
+  subroutine point_open(self, directory, variables, timed, error)
     class(point_record_t), intent(inout) :: self
     !> Folder of the results.
     character(len=*), intent(in) :: directory
     !> Internal variables of the materials.
     type(variable_t), intent(in) :: variables(:)
+    !> Whether a point has a time.
+    logical, intent(in) :: timed
     !> Set if the file cannot be written.
     type(error_t), allocatable, intent(out) :: error
 
+    self%timed = timed
     call self%table%open(directory//"/history.csv", error)
     if (allocated(error)) return
-    call self%table%file%put(heading(variables), error)
+    call self%table%file%put(heading(variables, timed), error)
     if (.not. allocated(error)) call self%table%file%flush(error)
   end subroutine point_open
 
   !> Return the lines of the heading: units and names of the columns.
-  function heading(variables) result(text)
+  function heading(variables, timed) result(text)
     type(variable_t), intent(in) :: variables(:)
+    logical, intent(in) :: timed
     character(len=:), allocatable :: text
 
     character(len=:), allocatable :: names, units
@@ -76,6 +84,10 @@ contains
         if (variables(i)%row%unit /= "") units = units//","//trim(variables(i)%row%unit)
       end do
     end do
+    if (timed) then
+      units = units//",s"
+      names = names//",time"
+    end if
     text = units//newline//names//newline
   end function heading
 
@@ -93,6 +105,7 @@ contains
     call self%table%add_real(row%plastic)
     call self%table%add_real(row%flow_stress)
     if (allocated(row%internal_variables)) call self%table%add_reals(row%internal_variables)
+    if (self%timed) call self%table%add_real(row%time)
     call self%table%end_row(error)
   end subroutine point_write
 

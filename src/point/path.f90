@@ -20,6 +20,8 @@ module dd3_point_path
     real(wp) :: gradient(3, 3) = 0.0_wp
     !> Number of equal steps.
     integer :: steps = 1
+    !> Time of a step, s; 0 if none is given.
+    real(wp) :: time = 0.0_wp
   end type segment_t
 
   !> Path of a material point.
@@ -62,6 +64,7 @@ contains
     logical, intent(in) :: by_gradient
 
     segment%steps = goal%steps
+    segment%time = goal%duration/real(goal%steps, wp)
     if (by_gradient) then
       segment%gradient = transpose(reshape(goal%value, [3, 3]))
     else

@@ -35,6 +35,8 @@ module dd3_point_run
     real(wp) :: gradient(3, 3) = 0.0_wp
     !> Steps made.
     integer :: increment = 0
+    !> Time since the start, s.
+    real(wp) :: time = 0.0_wp
     !> Interval of the rows, in steps.
     integer :: every = 1
     !> The last row was not due and is not written yet.
@@ -63,7 +65,8 @@ contains
     integer :: i
 
     increments = 0
-    call record%open(directory, model%internal_variable, error)
+    call record%open(directory, model%internal_variable, &
+        any([(any(case%point(i)%goal%duration > 0.0_wp), i=1, size(case%point))]), error)
     do i = 1, size(case%point)
       if (allocated(error)) exit
       call new_path(path, case%point(i))
@@ -129,10 +132,10 @@ contains
       fraction = real(k, wp)/real(segment%steps, wp)
       if (path%by_gradient) then
         call apply_gradient(run, model%material(path%material), &
-            gradient + fraction*(segment%gradient - gradient), verdict)
+            gradient + fraction*(segment%gradient - gradient), segment%time, verdict)
       else
         call drive_to_target(run%state, model%material(path%material), path%by_stress, &
-            start + fraction*(segment%target - start), verdict)
+            start + fraction*(segment%target - start), segment%time, verdict)
       end if
       if (verdict%outcome /= verdict_converged) then
         call fatal_error(error, "point "//path%name//", step "// &
@@ -140,6 +143,7 @@ contains
         return
       end if
       run%increment = run%increment + 1
+      run%time = run%time + segment%time
       run%waiting = mod(run%increment, run%every) /= 0
       if (.not. run%waiting) call write_row(run, model, path, record, error)
       if (allocated(error)) return
@@ -152,11 +156,13 @@ contains
   end subroutine run_segment
 
   !> Bring a material point to a deformation gradient.
-  subroutine apply_gradient(run, material, gradient, verdict)
+  subroutine apply_gradient(run, material, gradient, time, verdict)
     type(point_run_t), intent(inout) :: run
     type(material_t), intent(in) :: material
     !> Relative to the start.
     real(wp), intent(in) :: gradient(3, 3)
+    !> Time of the step, s.
+    real(wp), intent(in) :: time
     type(verdict_t), intent(out) :: verdict
 
     real(wp) :: inverse_before(3, 3), strain(6), rotation(3, 3)
@@ -167,7 +173,7 @@ contains
     if (.not. regular) verdict%cause = cause_gradient
     if (.not. regular) return
     call polar_increment(matmul(gradient, inverse_before), strain, rotation)
-    call apply_strain(run%state, material, kelvin_factor*strain, rotation, verdict)
+    call apply_strain(run%state, material, kelvin_factor*strain, rotation, time, verdict)
     if (verdict%outcome /= verdict_converged) return
     run%gradient = gradient
     run%state%strain = left_strain(gradient)
@@ -203,6 +209,7 @@ contains
     integer :: i
 
     row%increment = run%increment
+    row%time = run%time
     row%point = path%name
     row%strain = run%state%strain
     row%stress = global_stress(run%state)

@@ -85,6 +85,7 @@ contains
       attempt%ends_phase = trial%progress >= 1.0_wp
       trial%travel = committed%travel &
           + (trial%progress - committed%progress)*phase%length
+      trial%time = committed%time + (trial%progress - committed%progress)*phase%duration
       trial%contact%hint%due = .true.
       call set_rotations(phase, trial)
       call equilibrium%begin(prediction%step%scaled(r))

@@ -9,7 +9,7 @@ module dd3_run_file_material
   use dd3_input_table, only : find_key
   use dd3_laws_choice, only : choose_law
   use dd3_material_check, only : describe_laws, law_backstress, law_hardening, law_modulus, &
-      law_yield
+      law_rate, law_yield
   use dd3_material_description, only : description_t, law_choice_t
   use dd3_model_model, only : model_t
   use dd3_run_file_input, only : add_location
@@ -43,11 +43,8 @@ contains
           end if
         end do
         call json%end_array()
-        if (same_name(material%modulus%name, "none")) then
-          call json%add_null("modulus")
-        else
-          call add_law(json, "modulus", law_modulus, material%modulus)
-        end if
+        call add_optional(json, "modulus", law_modulus, material%modulus)
+        call add_optional(json, "rate", law_rate, material%rate)
         call json%add("rolling_direction", model%axes(:, 1, m))
         call json%add("normal_direction", model%axes(:, 3, m))
         n = 0
@@ -59,6 +56,22 @@ contains
     end do
     call json%end_array()
   end subroutine add_materials
+
+  !> Add a law that the material may lack: null then.
+  subroutine add_optional(json, name, kind, spec)
+    type(json_t), intent(inout) :: json
+    character(len=*), intent(in) :: name
+    !> One of the `law_*` values.
+    integer, intent(in) :: kind
+    !> Without errors.
+    type(law_spec_t), intent(in) :: spec
+
+    if (same_name(spec%name, "none")) then
+      call json%add_null(name)
+    else
+      call add_law(json, name, kind, spec)
+    end if
+  end subroutine add_optional
 
   !> Add a law with the values of its parameters.
   subroutine add_law(json, name, kind, spec)

@@ -53,8 +53,12 @@ contains
       call material%laws%backstress(i)%law%describe(description)
       text = text//source_line(description)
     end do
-    if (.not. material%laws%softens) return
-    call material%laws%modulus%law%describe(description)
+    if (material%laws%softens) then
+      call material%laws%modulus%law%describe(description)
+      text = text//source_line(description)
+    end if
+    if (.not. material%laws%viscous) return
+    call material%laws%rate%law%describe(description)
     text = text//source_line(description)
   end function law_sources
 

@@ -64,7 +64,29 @@ contains
       before = model%phase(i)
     end do
     call set_gaps(model, case, errors)
+    call check_times(model, case, errors)
   end subroutine new_phases
+
+  !> Report phases without a time, if the flow stress of an element depends on the strain rate.
+  subroutine check_times(model, case, errors)
+    type(model_t), intent(in) :: model
+    type(case_t), intent(in) :: case
+    !> Errors found are added.
+    type(error_list_t), intent(inout) :: errors
+
+    integer :: i, m
+
+    do m = 1, size(model%material)
+      if (.not. (model%material(m)%laws%viscous .and. any(model%material_of == m))) cycle
+      do i = 1, size(model%phase)
+        if (model%phase(i)%duration > 0.0_wp) cycle
+        call errors%push_input(case%phase(i)%source%opened, "the phase has no time, but "// &
+            "material '"//case%material(m)%source%called()//"' has a law of the strain rate", &
+            "duration = seconds, or speed = mm/s of the controlling tool", code="E163")
+      end do
+      return
+    end do
+  end subroutine check_times
 
   !> Make the phase before the first one: no motion, no load.
   subroutine new_idle_phase(phase, model)
@@ -214,10 +236,12 @@ contains
     end do
     if (spec%unload .and. any(phase%withdrawn) .and. size(spec%table) == 0) phase%opening = opening
     phase%trial = spec%trial
+    phase%duration = spec%duration
     phase%length = 0.0_wp
     if (spec%control == 0) return
     phase%length = norm2(phase%move(:, spec%control))
     if (phase%length > 0.0_wp) phase%trial = spec%trial/phase%length
+    if (spec%speed > 0.0_wp) phase%duration = phase%length/spec%speed
   end subroutine set_tools
 
   !> Withdraw a tool that has contact, by its `move` in the phase or else along its line.

@@ -149,7 +149,7 @@ contains
               committed%sheet%internal_variables(:n, p, e), &
               work%strain(:, p), trial%sheet%stress(:, p, e), trial%sheet%internal_variables(:n, &
               p, e), &
-              tangent(:, :, p), trial%sheet%plastic(p, e), verdict)
+              tangent(:, :, p), trial%sheet%plastic(p, e), verdict, trial%time - committed%time)
         end associate
         verdict%element = number
         verdict%point = p

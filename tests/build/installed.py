@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Install into a temporary prefix; run the program, an example and the utilities from there."""
 import argparse
+import csv
 import os
 import pathlib
 import re
@@ -46,7 +47,10 @@ def check_utilities(prefix, folder):
     said = call([command, "info"], folder)
     assert str(prefix / "bin" / "dd3imp") in said and str(data / "input_files") in said, said
     call([command, "section", "cup.out", "--plane", "y=0", "--field", "thickness", "--table", "section.csv"], folder)
-    assert (folder / "section.csv").stat().st_size > 100
+    with (folder / "section.csv").open(encoding="utf-8") as file:
+        rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
+    # The blank, 75 mm long and 0.78 mm thick, drawn by a millimetre.
+    assert (rows[0]["x0"], rows[-1]["x0"]) == (0, 75) and all(0.77 < row["thickness"] < 0.79 for row in rows), rows
     call([command, "example", "square_cup", "--into", "copied"], folder)
     call([prefix / "bin" / "dd3imp", "--check", "--quiet", folder / "copied" / "square_cup" / "square_cup.dat"], folder)
 

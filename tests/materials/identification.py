@@ -17,6 +17,7 @@ import re
 import sys
 import tempfile
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 
@@ -24,6 +25,7 @@ from dd3.command import dispatch
 from dd3.errors import Problem, run
 from dd3.identify import least_squares as fit
 from dd3.identify.measurements import TENSION, Datum
+from dd3.plot.figures import save
 from dd3.programs import parser_of_runs
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -44,7 +46,8 @@ STEEL_SETS = (
      {"scale": 0.66412, "alpha1": 0.96524, "alpha2": 0.84183, "gamma3": 1.4173}),
     ("karafillis_boyce", ["k=3"], {}),
     ("drucker", ["c=1.2129"], {"C1": 0.81324, "C2": 0.87964, "C3": 1.11288, "C6": 0.94426}),
-    ("drucker", [], {}), ("cazacu_barlat2001", [], {}), ("yld2004", ["m=6"], {}), ("cpb06", [], {}))
+    ("drucker", [], {}), ("cazacu_barlat2001", [], {}), ("yld2004", ["m=6"], {}), ("cpb06", [], {}),
+    ("yld2000", ["m=6"], {}), ("bbc2008", ["k=3"], {}))
 # Criterion, its true parameters, those given, whether all come out again.
 TRUE_SETS = (
     ("hill48", "F=0.284 G=0.358 H=0.642 N=1.289", [], True),
@@ -56,7 +59,12 @@ TRUE_SETS = (
      "b5=1 b10=0.89573 c=1.2", [], False),
     ("yld2004", "c12=-0.069888 c13=0.936408 c21=0.079143 c23=1.003060 c31=0.524741 c32=1.363180 c66=0.954322 "
      "d12=0.981171 d13=0.476741 d21=0.575316 d23=0.866827 d31=1.145010 d32=-0.079294 d66=1.404620 m=8", [], False),
-    ("cpb06", "C11=1 C12=0.05 C13=-0.04 C22=1.1 C23=0.06 C33=0.95 C66=1.05 k=0.1 m=2", [], True))
+    ("cpb06", "C11=1 C12=0.05 C13=-0.04 C22=1.1 C23=0.06 C33=0.95 C66=1.05 k=0.1 m=2", [], True),
+    ("yld2000", "alpha1=0.4865 alpha2=1.3783 alpha3=0.7536 alpha4=1.0246 alpha5=1.0363 alpha6=0.9036 alpha7=1.2321 "
+     "alpha8=1.4858 m=8", [], True),
+    ("bbc2008", "l1_1=0.130866 l2_1=0.621742 m1_1=0.783422 m2_1=0.660402 m3_1=0.000079 n1_1=0.110991 n2_1=0.048245 "
+     "n3_1=0.307522 l1_2=1.033922 l2_2=-0.071963 m1_2=0.000113 m2_2=0.000077 m3_2=0.538047 n1_2=0.055764 n2_2=1.018603 "
+     "n3_2=0.778150 k=4", [], False))
 LAWS = ("linear Y0=200 H=400", "swift K=565 e0=0.007 n=0.26", "voce Y0=150 Rsat=200 CR=12",
         "ludwik Y0=150 K=450 n=0.5", "hockett_sherby Y0=150 Ysat=420 N=6 q=0.75",
         "swift_voce alpha=0.4 K=600 e0=0.005 n=0.25 Y0=180 Rsat=170 CR=15")
@@ -279,13 +287,20 @@ def check_hardening(trial):
 
 
 def check_reversal(trial):
-    """Check a back-stress from tension and then compression, and the picture."""
+    """Check a back-stress from tension and then compression, and the picture: both curves, one on the other."""
     write_curve(curve(trial, REVERSAL, [(0.08, 160), (-0.04, 240)])[4::5])
-    found, rows, text = trial.fit("--hardening", "voce", "--backstress", "lemaitre_chaboche", "--curve", "curve.csv",
-                                  "--criterion", "hill48", *STEEL, "--plot", "found.png")
+    with mock.patch("dd3.identify.command.save", wraps=save) as drawn:
+        found, rows, text = trial.fit("--hardening", "voce", "--backstress", "lemaitre_chaboche", "--curve",
+                                      "curve.csv", "--criterion", "hill48", *STEEL, "--plot", "found.png")
     trial.near("reversal", found, of_law(REVERSAL), 2e-3)
     trial.expect("Note" not in text, f"reversal: notes\n{text}")
-    trial.expect(Path("found.png").exists() and Path("found.png").stat().st_size > 1e4, "no picture")
+    curves, ratios = (part.get_lines() for part in drawn.call_args.args[0].axes[:2])
+    measured, identified = (next(line for line in curves if line.get_label() == name) for name in ("measured", "identified"))
+    far = np.abs(np.subtract(measured.get_xydata(), identified.get_xydata())).max(axis=0)
+    trial.expect(far[0] == 0 and far[1] < 1 and min(np.diff(measured.get_xdata())) < 0, f"picture: {far} off")
+    values = {tuple(row) for line in ratios for row in line.get_xydata() if line.get_label() == "measured"}
+    trial.expect(values == {(0, 1.79), (45, 1.51), (90, 2.27)}, f"picture: r-values {values}")
+    trial.expect(Path("found.png").exists(), "no picture")
 
 
 def check_two_surfaces(trial):

@@ -50,6 +50,12 @@ def ones(law, names, rest):
     return f"{law} {' '.join(f'{name}=1' for name in names)} {rest}"
 
 
+def halves(s):
+    """Return coefficients of bbc2008 in the isotropic case, with s terms."""
+    return " ".join(f"{name}_{r}=0.5" for r in range(1, s + 1) for name in "l1 l2 m1 m2 m3 n1 n2 n3".split())
+
+
+ALPHAS = [f"alpha{i}" for i in range(1, 9)]
 NORMAL = [f"{t}{place}" for t in "cd" for place in ("12", "13", "21", "23", "31", "32")]
 CAZACU = [f"a{i}" for i in range(1, 7)] + [f"b{i}" for i in range(1, 12)]
 QUADRATIC = "cazacu_barlat2001 a1=1.3 a2=0.7 a3=0.8 a4=0.9 a5=1.2 a6=1.1 b1=1 b2=1 b3=1 b4=1 c=0"
@@ -64,6 +70,10 @@ CRITERIA = (
     (QUADRATIC, "hill48 F={:.15g} G={:.15g} H={:.15g} L={:.15g} M={:.15g} N={:.15g}".format(
         *(value / 2.1 for value in (0.7, 0.8, 1.3, 3.3, 3.6, 2.7)))),
     (ones("yld2004", NORMAL, "m=8"), "hosford m=8"), (two_of_barlat(6), f"yld91 {BARLAT} m=6"),
+    (ones("yld2000", ALPHAS, "m=2"), "von_mises"), (ones("yld2000", ALPHAS, "m=4"), "von_mises"),
+    (f"bbc2008 {halves(1)} k=2", "von_mises"), (f"bbc2008 {halves(2)} k=1", "von_mises"),
+    (f"bbc2008 {halves(1)} k=4", ones("yld2000", ALPHAS, "m=8")),
+    (f"bbc2008 {halves(2)} f=1.2 k=3", ones("yld2000", ALPHAS, "f=1.2 m=6")),
     (f"{ISOTROPIC} k=0 m=2", "von_mises"), (f"{ISOTROPIC} k=0 m=4", "von_mises"),
     ("cpb06 C11=1.2 C12=0.7 C13=0.7 C22=1.2 C23=0.7 C33=1.2 C44=0.5 C55=0.5 C66=0.5 k=0.2 m=2",
      f"{ISOTROPIC} k=0.2 m=2"),

@@ -1,16 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Die faces of parts: punch and die against both sides of the part, the binder, joints and folds, choices and refusals."""
 
+import gmsh
 import numpy as np
 import pytest
 from helpers import call
-from part_set import PARTS, write
+from part_set import PARTS, occ, pocket, write
 from scipy.spatial import cKDTree
-from test_tool_surfaces import read
+from test_tool_surfaces import points_of, read
 
+from dd3.errors import Problem
 from dd3.gmsh_session import session
 from dd3.part.reading import Request, read_part
+from dd3.tools import mitres
 from dd3.tools.binder import developable, inclined, level, of_points
+from dd3.tools.cad import silence
 from dd3.tools.joints import find_joints, folded, kinks
 from dd3.tools.patch_distance import Distance
 
@@ -24,6 +28,10 @@ def folder(tmp_path_factory):
     """Write the parts."""
     folder = tmp_path_factory.mktemp("die_faces")
     write(folder, [*NAMES, "crowned_block", "milled"])
+    with session(), silence():
+        pocket((40, 30), 20, 1, 0, 5)
+        occ.synchronize()
+        gmsh.write(str(folder / "mitred_tray.step"))
     return folder
 
 
@@ -137,6 +145,37 @@ def test_choices(folder, tmp_path):
     said = call("tool", folder / "milled.step", tmp_path / "milled", "--thickness", 1, "--faces", 3, "7-23")
     assert "binder     level, on which the part's own flange lies" in said, said
     assert "sharp edges rounded by 2.1 mm: 8" in said and "shoulder   of the part, radius 1.01 mm" in said, said
-    said = call("tool", folder / "crowned_block.step", tmp_path / "crowned", "--thickness", 1, expect=2)
-    assert "the sharp edges 1-2 4-5 7 10-12 17-18 20-21 cannot be rounded by up to 1 mm" in said, said
-    assert "some are shorter than the radius, 2 4 11 20, the shortest of 0.594 mm" in said, said
+
+
+@pytest.mark.parametrize(("name", "corner", "radius", "off", "faces"), [
+    ("crowned_block", (60, 45), 6, 2.49, "3 5 7 10"), ("mitred_tray", (39, 29), 4, 1.66, "15-18")])
+def test_mitres(folder, tmp_path, name, corner, radius, off, faces):
+    """Check that fillets which end in mitres go round the corners, of a block and inside of a sheet, and that the die
+    is at one distance from the punch there."""
+    said = call("tool", folder / f"{name}.step", tmp_path, "--thickness", 1, "--clearance", CLEARANCE)
+    assert f"fillets of faces {faces}, which end in mitres, led around 4 corners, by {radius} mm: there" in said, said
+    assert f"{off} mm off the part's sharp corners" in said and "not estimated" not in said, said
+    punch, die = (read(tmp_path / f"{tool}.bez") for tool in ("punch", "die"))
+    assert not folded(punch).any() and not folded(die).any()
+    points = points_of(punch, 5)[0].reshape(-1, 3)
+    over = points[(points[:, :2] > np.array(corner) - radius).all(axis=1)]
+    away = np.linalg.norm(over[:, :2] - np.array(corner) + radius, axis=1)
+    # Above the fillets the corner is a cylinder, at their lower end the ball is level.
+    assert away.max() < radius + 0.01 and away[over[:, 2] > over[:, 2].max() - 1].min() > radius - 0.01
+    travel = float(said.split("travel")[1].split()[0])
+    closed = over - (0, 0, travel)
+    gap = np.linalg.norm(Distance(die, 4.0).nearest(closed[closed[:, 2] < -7])[0] - closed[closed[:, 2] < -7], axis=1)
+    assert np.abs(gap - 1 - CLEARANCE).max() < 0.01, (gap.min(), gap.max())
+
+
+def test_mitres_refused(folder):
+    """Check what is said of mitres around which no fillet is made, here by a radius that is too large."""
+    with session() as model, silence():
+        occ.importShapes(str(folder / "mitred_tray.step"))
+        occ.synchronize()
+        side = [10, 11, 12, 13, 15, 16, 17, 18, 19]
+        sharp = {edge: 60.0 for edge in mitres.edges_of(model, side) if set(mitres.faces_of(model, edge)) <= set(side)
+                 and mitres.is_sharp(model, edge)}
+        with pytest.raises(Problem, match="the fillets of faces 15-18 end in mitres, edges 33 35 37 39, and cannot be "
+                                          "led around these corners by 60 mm: round the corners in the CAD program"):
+            mitres.rounded(model, side, sharp)

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is read of LS-DYNA decks, each with its value known independently, and that nothing is left out without a word."""
 
-import argparse
 import math
 import re
 import subprocess
@@ -21,7 +20,7 @@ from dd3.hanging import hanging_nodes
 def imported(text, **options):
     """Return the import of a deck, the lines of its input file, and what was left out."""
     Path("deck.k").write_text(text)
-    found = Import(argparse.Namespace(deck=Path("deck.k"), units=options.get("units"), blank=None))
+    found = Import(Path("deck.k"), units=options.get("units"))
     body = "\n".join(found.body())
     return found, body, [str(item) for item in found.left_out]
 

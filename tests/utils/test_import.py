@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Import of LS-DYNA decks: two that run to their ends, materials, wrong and damaged decks."""
 
-import argparse
 import math
 import re
 import subprocess
@@ -15,7 +14,7 @@ from mutations import mutants
 
 from dd3.dyna.cards import LONG, Reader
 from dd3.dyna.command import Import
-from dd3.dyna.planar import barlat89_at, yld2000_at
+from dd3.dyna.planar import barlat89_at
 from dd3.errors import Problem
 from dd3.mesh import read_inp
 from dd3.run import read_frame
@@ -26,7 +25,7 @@ MUTATED = 1000
 def imported(text, **options):
     """Return the import of a deck in the folder of the test, without its tools' surfaces."""
     Path("deck.k").write_bytes(text if isinstance(text, bytes) else text.encode())
-    found = Import(argparse.Namespace(deck=Path("deck.k"), units=None, blank=None, **options))
+    found = Import(Path("deck.k"), **options)
     return found, "\n".join(found.entries())
 
 
@@ -114,7 +113,7 @@ def test_materials():
             (["*MAT_036", row(*elastic, 1.0, 1000.0, 200.0), row(6.0, 1.6, 1.2, 2.0)], "hill48 r0=1.6 r45=1.2 r90=2",
              "linear Y0=200 H=1004.7847"),
             (["*MAT_133", row(*elastic, 0.0), row(500.0, 0.01, 0.2, "", "", 1.0, 8.0), row(*[1.0] * 8)],
-             "hill48 r0=1 r45=1 r90=1", "swift K=500 e0=0.01 n=0.2")):
+             "yld2000 " + " ".join(f"alpha{k}=1" for k in range(1, 9)) + " m=8", "swift K=500 e0=0.01 n=0.2")):
         found, text = imported(with_material(*card))
         assert f"  yield = {criterion}\n" in text and f"  hardening = {hardening}" in text, (card, found.law)
     two_surfaces = "yoshida_uemori Y=124 B=168 C=500 m=12 b_sat=9 Rsat=190 h=0.5\n"
@@ -143,11 +142,20 @@ def test_materials():
 
 
 def test_yld2000():
-    """Check r-values and yield stresses of AA2090-T3 (Barlat et al. 2003, Tables 1 and 3)."""
-    alpha = np.array([0.4865, 1.3783, 0.7536, 1.0246, 1.0363, 0.9036, 1.2321, 1.4858])
-    for angle, stress, r in ((0, 1.0, 0.2115), (45, 0.8114, 1.5769), (90, 0.9102, 0.6923)):
-        found = yld2000_at(alpha, 8, math.radians(angle))
-        assert np.allclose(found, (stress, r), atol=4e-3), (angle, found)
+    """Check the coefficients of *MAT_133, also with A < 0, and the command for measured values."""
+    elastic, swift = (1, 2.7e-9, 7e4, 0.33), (500.0, 0.01, 0.2, "", "", 1.0)
+    alpha = (0.4865, 1.3783, 0.7536, 1.0246, 1.0363, 0.9036, 1.2321, 1.4858)
+    for exponent, between in ((8.0, []), (-8.0, [row("")])):
+        _, text = imported(with_material("*MAT_133", row(*elastic), row(*swift, exponent), *between, row(*alpha)))
+        assert "  yield = yld2000 alpha1=0.4865 alpha2=1.3783 alpha3=0.7536 alpha4=1.0246 alpha5=1.0363 alpha6=0.9036 " \
+               "alpha7=1.2321 alpha8=1.4858 m=8\n" in text, text
+        assert "hill48" not in text
+    measured = (row(200.0, 190.0, 180.0, 0.8, 0.4, 0.6), row(210.0, 210.0, 0.0, -1.0, -1.1))
+    _, text = imported(with_material("*MAT_133", row(*elastic, 1.0), row(*swift, 8.0), *measured))
+    assert "  yield = hill48 r0=0.8 r45=0.4 r90=0.6\n" in text
+    assert "dd3 identify blank --criterion yld2000 --fix m=8 --r 0:0.8 45:0.4 90:0.6 --stress 0:1 45:0.95 90:0.9 " \
+           "--biaxial-stress 1.05 --biaxial-r 1.1\n" in text, text
+    assert "all coefficients of Yld2000 are 0" in refused(with_material("*MAT_133", row(*elastic), row(*swift, 8.0), row(0.0)))
 
 
 def test_formats(tmp_path):

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reading of the set of parts: what is found of each, against what a die engineer says of it."""
 
+import colorsys
 import subprocess
 import sys
 
+import matplotlib.image
 import numpy as np
 import pytest
 from helpers import ROOT, call
@@ -11,6 +13,7 @@ from part_set import PARTS, write
 from scipy.spatial.transform import Rotation
 
 from dd3.gmsh_session import session
+from dd3.part.picture import BACK, LEVEL, WALLS
 from dd3.part.reading import Request, read_part
 from dd3.part.shape import angle_between
 from dd3.part.units import unit_of_iges
@@ -90,17 +93,29 @@ def test_examples(tmp_path):
         assert reading.sheet.thickness is thickness or abs(reading.sheet.thickness - thickness) < 1e-4, name
 
 
+def shown(path, colour):
+    """Return the fractions of both views of a part's picture that have the hue of a colour, in any light."""
+    pixels = matplotlib.image.imread(path)[..., :3]
+    hue = colorsys.rgb_to_hsv(*colour)[0]
+    saturated = np.ptp(pixels, axis=2) > 0.15 * pixels.max(axis=2)
+    red, green, blue = np.moveaxis(pixels, 2, 0)
+    angle = np.arctan2(np.sqrt(3) * (green - blue), 2 * red - green - blue) / (2 * np.pi)
+    near = saturated & (np.abs((angle - hue + 0.5) % 1 - 0.5) < 0.03)
+    return [view.mean() for view in np.array_split(near, 2, axis=1)]
+
+
 def test_command(folder, tmp_path):
     """Check the table and the picture of the command, also of a part that cannot be drawn, and its messages."""
     said = call("part", folder / "hat.step", tmp_path / "hat")
     assert "sheet of 1.2 mm" in said and "from +z: no undercut, least draft 10 degrees" in said, said
-    assert (tmp_path / "hat" / "part.png").stat().st_size > 20000
+    walls, level, back = (shown(tmp_path / "hat" / "part.png", colour) for colour in (WALLS, LEVEL, BACK))
+    assert min(walls) > 0.02 and min(level) > 0.1 and max(back) == 0, (walls, level, back)
     rows = (tmp_path / "hat" / "part.txt").read_text().splitlines()
     assert sum(" upper " in row for row in rows) == 9 and any("flange" in row for row in rows)
     said = call("part", folder / "lipped_channel.step", tmp_path / "lipped", expect=2)
     assert "not in one stroke from any direction; from +z they are" in said, said
     assert "bent along 4 straight lines" in said, said
-    assert (tmp_path / "lipped" / "part.png").exists()
+    assert max(shown(tmp_path / "lipped" / "part.png", BACK)) > 0.02
     said = call("part", folder / "leaning_tray.step", tmp_path / "leaning", "--toward", 0, 0, 1, expect=2)
     assert "undercut at faces" in said and "from 0 0.1822 0.9833 there is none" in said, said
     said = call("part", folder / "tray.step", tmp_path / "tray", "--thickness", 0.8)
@@ -123,7 +138,7 @@ def test_gaps(tmp_path):
     gmsh.finalize()
     said = call("part", tmp_path / "gap.step", tmp_path / "gap", expect=2)
     assert "free edges of the CAD up to 0.1 mm apart" in said and "--sew" in said, said
-    assert (tmp_path / "gap" / "part.png").exists()
+    assert min(shown(tmp_path / "gap" / "part.png", (0.84, 0.15, 0.16))) > 0.0005  # lines along the gap
     assert "no such file" in call("part", "none.step", expect=2)
     (tmp_path / "damaged.step").write_text("ISO-10303-21;\n")
     assert "error" in call("part", "damaged.step", expect=2)

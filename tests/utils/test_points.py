@@ -7,6 +7,8 @@ import sys
 import numpy as np
 import pytest
 from helpers import UTILS, call
+from matplotlib.colors import to_rgb
+from PIL import Image
 
 from dd3.plot import point
 from dd3.programs import launch
@@ -87,7 +89,11 @@ def test_laws(program, tmp_path):
     done = launch([*words, "hill48", "swift", "prager", "--program", program, "--output", tmp_path / "made"])
     assert done.code == 0, done.errors
     for law in ("hill48", "swift", "prager"):
-        assert 0 < (tmp_path / "made" / f"{law}.png").stat().st_size <= 60000, law
+        with Image.open(tmp_path / "made" / f"{law}.png") as picture:
+            counts = {colour: count for count, colour in picture.convert("RGB").getcolors()}
+        assert len(counts) <= 64, law  # a small file
+        first = max(counts, key=lambda colour: counts[colour] * (np.ptp(np.array(colour, int)) > 100))
+        assert np.allclose(first, 255 * np.array(to_rgb("C0")), atol=8), (law, first)  # the law's curves
     done = launch([*words, "hill84"])
     assert done.code == 2 and "no law hill84; there are: von_mises" in done.errors
 

@@ -49,6 +49,10 @@ No section compares with an experiment. Comparisons with measured values are in 
 ring](reports/split_ring.md), for springback, the [cup of AA6016](reports/round_cup_aa6016.md) and the [square
 cup](reports/square_cup.md#the-aluminium-sheet).
 
+The tests `case_bending_*` that have no section here compare the bending test with the program's own runs, with halved
+limits of the predictor or on a finer mesh. They bound the error of the increments and of the mesh, and show changes of
+the results; they are no independent verification.
+
 The times in the studies of refinement are those of one thread of a busy machine: compare within a table. There are
 three unknowns for each node. The order is that of the error between a mesh and the coarser one above it.
 """

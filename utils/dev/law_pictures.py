@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draw the pictures of docs/laws: one for each yield criterion, hardening law, back-stress law and the chord modulus.
+"""Draw the pictures of docs/laws: one for each yield criterion, hardening law, back-stress law, the chord modulus and laws of
+the strain rate.
 
     utils/dev/law_pictures.py --program build/release/dd3imp
     utils/dev/law_pictures.py hill48 swift --program build/release/dd3imp --output /tmp
@@ -8,7 +9,8 @@
 Materials and paths are those of input_files/laws/<law>.dat; all values come from runs of the program. Criteria: the
 yield surface with its normals, r-values and yield stresses by angle; the broken line is the surface of von Mises.
 Hardening laws: tension as true and as nominal stress, with a dot at the largest force. Back-stresses and laws that
-depend on the strain path: reversals and changes of the path. Chord modulus: tension with unloadings.
+depend on the strain path: reversals and changes of the path. Chord modulus: tension with unloadings. Strain rate: tension at
+four rates, and with jumps of the rate and relaxation.
 """
 
 import argparse
@@ -223,6 +225,22 @@ def chord(program, law, figure):
         legend(part)
 
 
+def rates(program, law, figure):
+    """Draw tension at several strain rates, and with jumps of the rate."""
+    points = deck_run(program, law)
+    axes, names = figure.subplots(1, 2, sharey=True), labels(law)
+    for name, rows in points.items():
+        strain, stress = columns(rows, "e11", "s11")
+        jumps = name == "jumps"
+        axes[int(jumps)].plot(strain, stress, **({"color": "C4"} if jumps else {"label": f"{names[name]} /s"}))
+        if name in ("rate_0.001", "rate_1000"):
+            axes[1].plot(strain, stress, **{**BROKEN, "label": f"{names[name]} /s"})
+    axes[0].set(xlabel="logarithmic strain", ylabel="true stress (MPa)", title="constant rates", ylim=(0, None))
+    axes[1].set(xlabel="logarithmic strain", title="jumps of the rate, relaxation at 0.1")
+    for part in axes:
+        legend(part, loc="lower right")
+
+
 def columns(rows, *keys):
     """Return columns of rows."""
     return [np.array([row[key] for row in rows]) for key in keys]
@@ -234,10 +252,12 @@ PICTURES = {
     "yld91": (orthotropic, {"measured": STEEL}), "karafillis_boyce": (orthotropic, {}),
     "drucker": (orthotropic, {"measured": STEEL}), "cazacu_barlat2001": (orthotropic, {"measured": STEEL}),
     "yld2004": (orthotropic, {"measured": ALLOY}), "cpb06": (orthotropic, {"compression": True}),
+    "yld2000": (orthotropic, {"measured": ALLOY}), "bbc2008": (orthotropic, {"measured": ALLOY}),
     **{law: (tension, {}) for law in ("perfect", "linear", "swift", "voce", "swift_voce", "ludwik",
                                       "hockett_sherby")},
     "table": (tension, {"points_of": TABLE}), "teodosiu_hu": (teodosiu_hu, {}),
-    "yoshida_uemori": (yoshida_uemori, {}), "chord": (chord, {}), "prager": (prager, {}),
+    "yoshida_uemori": (yoshida_uemori, {}), "chord": (chord, {}),
+    **{law: (rates, {}) for law in ("cowper_symonds", "johnson_cook", "power")}, "prager": (prager, {}),
     "lemaitre_chaboche": (lemaitre_chaboche, {}),
 }
 

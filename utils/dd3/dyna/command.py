@@ -12,7 +12,6 @@ a force that changes meanwhile gets a press_table. Each keyword and each field t
 and the reason, here and in the input file.
 """
 
-import argparse
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -54,11 +53,11 @@ class Tool:
 class Import:
     """The import of a deck: what is found in it, and the notes for the user."""
 
-    def __init__(self, options: argparse.Namespace) -> None:
-        self.deck = deck = Deck(options.deck)
-        self.part = self.blank_part(options.blank)
+    def __init__(self, path: Path, blank: int | None = None, units: str | None = None) -> None:
+        self.deck = deck = Deck(path)
+        self.part = self.blank_part(blank)
         self.material = deck.material(self.part)
-        self.units: Units = units_of(self.material, options.units)
+        self.units: Units = units_of(self.material, units)
         self.blank: Blank = blank_of(deck, self.part, self.units)
         self.law: Law = law_of(deck, self.material, self.units, self.blank.axes)
         self.notes = [*deck.notes, *self.law.notes]
@@ -351,7 +350,7 @@ def convert(words: Sequence[str]) -> None:
     options = parser.parse_args(words)
     if not options.deck.is_file():
         raise Problem(f"{options.deck}: no such file")
-    found = Import(options)
+    found = Import(options.deck, options.blank, options.units)
     folder = made_folder(options.output or options.deck.with_suffix(""))
     found.write_tools(folder)
     lines = found.entries()

@@ -20,7 +20,7 @@ from dd3.dyna.hardening import (
     swift,
     yoshida_uemori,
 )
-from dd3.dyna.planar import barlat89_at, yld2000_at
+from dd3.dyna.planar import barlat89_at
 from dd3.errors import Problem
 
 NAMES = {"RIGID": 20, "PIECEWISE_LINEAR_PLASTICITY": 24, "3-PARAMETER_BARLAT": 36, "HILL_3R": 122,
@@ -294,7 +294,7 @@ def hill(deck: Deck, card: Card, units: Units, law: Law) -> int:
 
 
 def yld2000(deck: Deck, card: Card, units: Units, law: Law) -> int:
-    """*MAT_133: Barlat et al. (2003), Yld2000-2d; hill48 with its r-values."""
+    """*MAT_133: Barlat et al. (2003), Yld2000-2d; by measured values, hill48 with the r-values."""
     first, second = row_of(card, 0), row_of(card, 1)
     exponent, at = second.number("A") or 8.0, 2
     first.leave("the stress is integrated in another way", "ITER")
@@ -303,27 +303,14 @@ def yld2000(deck: Deck, card: Card, units: Units, law: Law) -> int:
         at, exponent = 3, -exponent
         card.row(2, CHABOCHE).leave("back-stresses of this material are not taken over")
     if first.number("FIT"):
-        third = card.row(at, "SIG00 SIG45 SIG90 R00 R45 R90")
-        r = list(r_values(third))
-        stress = third.numbers("SIG00 SIG45 SIG90")
-        stress = [value / stress[0] for value in stress] if all(value > 0 for value in stress) else []
-        card.optional(at + 1, "SIGXX SIGYY SIGXY DXX DYY DXY").leave("biaxial tension does not enter hill48")
-        at += 1
+        at = measured2000(card, at, exponent, law)
     else:
         third = card.row(at, "ALPHA1 ALPHA2 ALPHA3 ALPHA4 ALPHA5 ALPHA6 ALPHA7 ALPHA8")
-        alpha = np.array([third.number(f"ALPHA{k}") for k in range(1, 9)])
-        if not np.any(alpha):
+        alpha = [third.number(f"ALPHA{k}") for k in range(1, 9)]
+        if not any(alpha):
             raise Problem(f"{third.place}: error: all coefficients of Yld2000 are 0")
-        found = [yld2000_at(alpha, exponent, np.radians(angle)) for angle in (0, 45, 90)]
-        if not np.all(np.isfinite(found)) or min(value for _, value in found) <= 0:
-            raise Problem(f"{third.place}: error: the coefficients of Yld2000 give no positive r-values")
-        stress, r = [value / found[0][0] for value, _ in found], [value for _, value in found]
-    law.criterion = hill48(r)
-    law.notes.append("yield: hill48 with the r-values, in place of Yld2000-2d; nearer: dd3 identify blank --criterion "
-                     f"yld2004 --fix m={exponent:g} --r "
-                     + " ".join(f"{angle}:{value:.4g}" for angle, value in zip((0, 45, 90), r))
-                     + (" --stress " + " ".join(f"{angle}:{value:.4g}" for angle, value in zip((0, 45, 90), stress))
-                        if stress else ""))
+        law.criterion = "yld2000 " + " ".join(f"alpha{k}={value:.8g}" for k, value in enumerate(alpha, 1)) \
+            + f" m={exponent:g}"
     rule = second.label("HARD")
     if rule < 0:
         second.leave("HARD < 0 takes the curve", "K E0 N")
@@ -333,6 +320,25 @@ def yld2000(deck: Deck, card: Card, units: Units, law: Law) -> int:
     else:
         raise Problem(f"{second.place}: error: the hardening rule HARD = {rule} is not read; expected 1, or the "
                       "negative number of a curve")
+    return at + 1
+
+
+def measured2000(card: Card, at: int, exponent: float, law: Law) -> int:
+    """Take Hill's criterion in place of Yld2000-2d by measured values; return the number of the last row read."""
+    third, fourth = card.row(at, "SIG00 SIG45 SIG90 R00 R45 R90"), card.optional(at + 1, "SIGXX SIGYY SIGXY DXX DYY DXY")
+    r, stress = r_values(third), third.numbers("SIG00 SIG45 SIG90")
+    law.criterion = hill48(r)
+    command = f"dd3 identify blank --criterion yld2000 --fix m={exponent:g} --r " \
+        + " ".join(f"{angle}:{value:.4g}" for angle, value in zip((0, 45, 90), r))
+    if all(value > 0 for value in stress):
+        command += " --stress " + " ".join(f"{angle}:{value / stress[0]:.4g}" for angle, value in zip((0, 45, 90), stress))
+        both, across = fourth.number("SIGXX"), fourth.number("SIGYY")
+        if both > 0 and both == across and not fourth.number("SIGXY"):
+            command += f" --biaxial-stress {both / stress[0]:.4g}"
+            if fourth.number("DXX"):
+                command += f" --biaxial-r {fourth.number('DYY') / fourth.number('DXX'):.4g}"
+    fourth.leave("biaxial tension does not enter hill48")
+    law.notes.append(f"yield: hill48 with the r-values, in place of Yld2000-2d by the measured values; nearer: {command}")
     return at + 1
 
 

@@ -33,26 +33,3 @@ def barlat89_at(values: tuple[float, float, float, float], exponent: float, angl
                      ** (1 / exponent))
 
     return tension(equivalent, angle)
-
-
-def yld2000_at(alpha: np.ndarray, exponent: float, angle: float) -> tuple[float, float]:
-    """Return yield stress over flow stress and r-value of Yld2000-2d in tension at an angle to rolling.
-
-    Source: Barlat et al., Int. J. Plasticity 19 (2003) 1297-1319.
-    """
-    a = alpha
-    first = np.array([[2 * a[0], -a[0], 0], [-a[1], 2 * a[1], 0], [0, 0, 3 * a[6]]]) / 3
-    second = np.array([[8 * a[4] - 2 * a[2] - 2 * a[5] + 2 * a[3], 4 * a[5] - 4 * a[3] - 4 * a[4] + a[2], 0],
-                       [4 * a[2] - 4 * a[4] - 4 * a[3] + a[5], 8 * a[3] - 2 * a[5] - 2 * a[2] + 2 * a[4], 0],
-                       [0, 0, 9 * a[7]]]) / 9
-
-    def principal(x: np.ndarray) -> tuple[float, float]:
-        middle, radius = (x[0] + x[1]) / 2, np.hypot((x[0] - x[1]) / 2, x[2])
-        return middle + radius, middle - radius
-
-    def equivalent(s: np.ndarray) -> float:
-        (x1, x2), (y1, y2) = principal(first @ s), principal(second @ s)
-        return float(((abs(x1 - x2)**exponent + abs(2 * y2 + y1)**exponent + abs(2 * y1 + y2)**exponent) / 2)
-                     ** (1 / exponent))
-
-    return tension(equivalent, angle)

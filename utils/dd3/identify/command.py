@@ -24,20 +24,44 @@ Each line of the file of --data gives one of the values of the options --r, --st
 import argparse
 import re
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
 
 from dd3.columns import every
 from dd3.command import new_parser
 from dd3.errors import LOG, Problem
 from dd3.identify.criterion import CRITERIA, criterion
-from dd3.identify.hardening import BACKSTRESSES, LAWS, REVERSING, hardening
+from dd3.identify.hardening import BACKSTRESSES, LAWS, Curve, hardening, measured_curve, reverses
 from dd3.identify.least_squares import UNIT, NoStart, Points
 from dd3.identify.measurements import KEYS, TENSION, Datum, from_argument, read_data
 from dd3.plot.figures import save
 from dd3.programs import add_program
+
+
+@dataclass
+class Task:
+    """What is identified, and from what: the criterion, if it is given, from the data, the hardening from the curve."""
+
+    name: str
+    program: str
+    hardening: str | None = None  # name of a law to identify, or a law with its values
+    criterion: str | None = None
+    given: Mapping[str, float] = field(default_factory=dict)  # parameters of the criterion
+    yields: str = "von_mises"  # criterion of the curve where none is identified
+    data: list[Datum] = field(default_factory=list)
+    curve: str | None = None  # path of the table
+    plastic_strain: bool = False
+    backstresses: Sequence[str] = ()
+    young: float = 2.1e5  # MPa
+    poisson: float = 0.3
+    starts: int = 4
+    seed: int = 1
 
 
 def folded(key: str, text: str) -> list[str]:
@@ -51,16 +75,14 @@ def folded(key: str, text: str) -> list[str]:
     return [*lines, line]
 
 
-def block(options: argparse.Namespace, yields: str, hardens: Sequence[str], table: Sequence[str], notes: Sequence[str]
+def block(name: str, elastic: str, yields: str, hardens: Sequence[str], table: Sequence[str], notes: Sequence[str]
           ) -> str:
     """Return the file: measured and identified values as comments, then the *MATERIAL."""
     lines = ["# Identified by dd3",
              f"# {'':<32}{'measured':>10}{'identified':>12}{'difference':>12}{'weight':>8}"]
     lines += [f"# {line}" for line in table]
-    if not options.hardening:
-        notes = [*notes, "no hardening was given: the flow stress of 100 is only a unit"]
     lines += [f"# Note: {note}" for note in notes]
-    lines += [f"*MATERIAL {options.name}", f"  young = {options.young:g}", f"  poisson = {options.poisson:g}"]
+    lines += [f"*MATERIAL {name}", elastic]
     lines += folded("yield", yields)
     for line in hardens:
         lines += folded(*line.split(" = "))
@@ -118,36 +140,45 @@ def command_line() -> argparse.ArgumentParser:
     return parser
 
 
-def check_options(parser: argparse.ArgumentParser, options: argparse.Namespace) -> None:
+def check_options(parser: argparse.ArgumentParser, name: str, young: float, starts: int) -> None:
     """Check the options that `fit` has too."""
-    if not re.fullmatch(r"[A-Za-z][\w.-]*", options.name):
-        parser.error(f"{options.name}: a name begins with a letter and has letters, digits, _ . - only")
-    if options.young <= 0 or options.starts < 1:
+    if not re.fullmatch(r"[A-Za-z][\w.-]*", name):
+        parser.error(f"{name}: a name begins with a letter and has letters, digits, _ . - only")
+    if young <= 0 or starts < 1:
         parser.error("--young and --starts are positive")
 
 
-def arguments(words: Sequence[str] | None) -> argparse.Namespace:
-    """Return the options."""
+def arguments(words: Sequence[str] | None) -> tuple[Task, str | None, str | None]:
+    """Return what the command line asks for, and the paths of --output and --plot."""
     parser = command_line()
-    options = parser.parse_args(words)
-    options.fix = dict(options.fix)
-    fits = bool(options.hardening) and "=" not in options.hardening and ":" not in options.hardening
-    if fits and options.hardening not in LAWS:
+    options = vars(parser.parse_args(words))
+    texts = {key: options.pop(key) for key in KEYS}
+    output, plot, file = (options.pop(key) for key in ("output", "plot", "data"))
+    task = Task(given=dict(options.pop("fix")), backstresses=options.pop("backstress"), **options)
+    check_task(parser, task)
+    if task.criterion:
+        task.data = measured(file, texts)
+    return task, output, plot
+
+
+def check_task(parser: argparse.ArgumentParser, task: Task) -> None:
+    """Check that the options go together."""
+    fits = bool(task.hardening) and "=" not in str(task.hardening) and ":" not in str(task.hardening)
+    if fits and task.hardening not in LAWS:
         parser.error(f"--hardening: one of {', '.join(LAWS)}, or a law with all its values")
-    if fits != bool(options.curve):
+    if fits != bool(task.curve):
         parser.error("--curve and the name of a law in --hardening go together")
-    if options.backstress and not fits:
+    if task.backstresses and not fits:
         parser.error("--backstress goes with --curve")
-    if not options.criterion and not fits:
+    if not task.criterion and not fits:
         parser.error("nothing to identify: --criterion, or --hardening with --curve")
-    check_options(parser, options)
-    return options
+    check_options(parser, task.name, task.young, task.starts)
 
 
-def measured(options: argparse.Namespace) -> list[Datum]:
-    """Return the measured values of a criterion."""
-    parts = [partial(read_data, options.data)] if options.data else []
-    parts += [partial(from_argument, key, text) for key in KEYS for text in getattr(options, key)]
+def measured(path: str | None, texts: Mapping[str, Sequence[str]]) -> list[Datum]:
+    """Return the measured values of a criterion: those of a file, and of the texts of each option."""
+    parts = [partial(read_data, path)] if path else []
+    parts += [partial(from_argument, key, text) for key in KEYS for text in texts[key]]
     data = [datum for part in every(parts) for datum in part]
     if not data:
         raise Problem("error: no measured values\n  expected: --data or --" + " --".join(KEYS).replace("_", "-"))
@@ -156,27 +187,30 @@ def measured(options: argparse.Namespace) -> list[Datum]:
     return data
 
 
-def draw(options: argparse.Namespace, text: str, data: Sequence[Datum], curve: Any) -> None:
-    """Draw the material without its back-stresses as `dd3 plot point` does, and the measured values."""
+def picture_of(text: str, program: str, data: Sequence[Datum], curve: Curve | None, found: np.ndarray | None
+               ) -> Figure:
+    """Return the picture of `dd3 plot point` of the material without its back-stresses, with the measured values.
+
+    found: the identified stresses of a curve that turns, drawn in place of tension.
+    """
     from dd3.plot.point import picture
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "material.dat"
         path.write_text(re.sub(r"  backstress = .*\n", "", text), encoding="utf-8")
-        figure = picture([path], options.program, 0.2 if curve is None else max(curve[0].max(), 0.02))
+        figure: Figure = picture([path], program, 0.2 if curve is None else max(curve.strain.max(), 0.02))
     if legend := figure.axes[-1].get_legend():
         legend.remove()  # each panel has its own
     axes = figure.axes
-    reverses = bool(options.backstress) or options.hardening in REVERSING
-    if reverses:
+    if found is not None:
         for line in list(axes[0].lines):
             line.remove()
         axes[0].set_title("Curve")
     style: dict[str, Any] = {"linestyle": "none", "marker": "s", "color": "k", "markerfacecolor": "none",
                              "label": "measured"}
     if curve is not None:
-        axes[0].plot(curve[0], curve[1], **{**style, "marker": ".", "zorder": 1})
-        if reverses:
-            axes[0].plot(curve[0], curve[2], color="C1", label="identified")
+        axes[0].plot(curve.strain, curve.stress, **{**style, "marker": ".", "zorder": 1})
+        if found is not None:
+            axes[0].plot(curve.strain, found, color="C1", label="identified")
     for part, quantity in ((axes[1], "r"), (axes[2], "stress")):
         chosen = [d for d in data if d.kind == "tension" and d.quantity == quantity]
         if chosen:
@@ -186,7 +220,7 @@ def draw(options: argparse.Namespace, text: str, data: Sequence[Datum], curve: A
         axes[3].plot(*zip(*places, strict=True), **style)
     for part in axes:
         part.legend(fontsize="small")
-    save(figure, options.plot, 100)
+    return figure
 
 
 def on_surface(d: Datum) -> tuple[float, float] | None:
@@ -199,40 +233,45 @@ def on_surface(d: Datum) -> tuple[float, float] | None:
     return (value, 0) if d.angle == 0 else (0, value)
 
 
-def identify(options: argparse.Namespace, yields: str = "von_mises") -> None:
+def identify(task: Task, output: str | None = None, plot: str | None = None) -> None:
     """Identify the parameters of a criterion, without one of the hardening beside a given criterion; write the file."""
-    points = Points(options.program, options.young, options.poisson)
+    points = Points(task.program, task.young, task.poisson)
+    yields, hardens = task.yields, [f"hardening = {task.hardening or UNIT}"]
     table: list[str] = []
     notes: list[str] = []
-    data, curve = list[Datum](), None
-    hardens = [f"hardening = {options.hardening or UNIT}"]
+    curve, values = None, None
     try:
-        if options.criterion:
-            data = measured(options)
-            yields, table, notes = criterion(options, points, data)
-        if options.curve:
-            hardens, more, other, curve = hardening(options, points, yields)
+        if task.criterion:
+            yields, table, notes = criterion(task.criterion, task.given, points, task.data, task.starts, task.seed)
+        if task.curve:
+            law = str(task.hardening)
+            curve = measured_curve(task.curve, task.young, reverses(law, task.backstresses), task.plastic_strain)
+            hardens, more, other, values = hardening(law, task.backstresses, curve, points, yields, task.starts,
+                                                     task.seed)
             table, notes = table + more, notes + other
     except NoStart:
         raise Problem("error: the program refused the parameters of every start; it said: "
                       f"{points.refusal or 'the points did not converge'}\n"
                       "  expected: more --starts, or other values of --fix") from None
-    text = block(options, yields, hardens, table, notes)
-    code, said, _ = points.run(text + f"*POINT p\n  material = {options.name}\n  control = {TENSION}\n"
+    if not task.hardening:
+        notes = [*notes, "no hardening was given: the flow stress of 100 is only a unit"]
+    text = block(task.name, points.elastic, yields, hardens, table, notes)
+    code, said, _ = points.run(text + f"*POINT p\n  material = {task.name}\n  control = {TENSION}\n"
                                "  target = 1e-6 0 0 0 0 0 steps=1\n")
     points.bar.close()
     if code != 0:
         raise Problem(said.strip())
-    path = Path(options.output or f"{options.name}.dat")
+    path = Path(output or f"{task.name}.dat")
     try:
         path.write_text(text, encoding="utf-8")
     except OSError as error:
         raise Problem(f"{path}: error: {error.strerror}") from None
     LOG.info(f"{text}\n{points.runs} runs of the program; written to {path}")
-    if options.plot:
-        draw(options, text, data, curve)
+    if plot:
+        found = values if reverses(task.hardening or "", task.backstresses) else None
+        save(picture_of(text, task.program, task.data, curve, found), plot, 100)
 
 
 def main(words: Sequence[str] | None = None) -> None:
     """Identify the material of the command line."""
-    identify(arguments(words))
+    identify(*arguments(words))

@@ -12,7 +12,7 @@ identifies the yield criterion; here it is given. A back-stress requires a curve
 from collections.abc import Sequence
 
 from dd3.command import new_parser
-from dd3.identify.command import add_curve, check_options, identify
+from dd3.identify.command import Task, add_curve, check_options, identify
 from dd3.identify.hardening import LAWS
 from dd3.identify.measurements import check_law
 
@@ -26,8 +26,9 @@ def main(words: Sequence[str] | None = None) -> None:
     parser.add_argument("--yield", dest="yields", metavar="LAW", default="von_mises",
                         help="yield criterion with its parameters (von_mises)")
     add_curve(parser)
-    parser.set_defaults(criterion=None)
-    options = parser.parse_args(words)
-    check_options(parser, options)
-    check_law("--yield", options.yields)
-    identify(options, options.yields)
+    options = vars(parser.parse_args(words))
+    output, plot = options.pop("output"), options.pop("plot")
+    task = Task(backstresses=options.pop("backstress"), **options)
+    check_options(parser, task.name, task.young, task.starts)
+    check_law("--yield", task.yields)
+    identify(task, output, plot)

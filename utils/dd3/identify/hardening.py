@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Identification of a hardening law, with back-stresses, from a tension curve."""
 
-import argparse
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,6 +14,14 @@ MISSED_CURVE = 0.01  # root mean square of the difference, over the largest stre
 LAWS = ("linear", "swift", "voce", "swift_voce", "ludwik", "hockett_sherby", "table", "yoshida_uemori")
 REVERSING = ("yoshida_uemori",)  # laws with a back-stress of their own
 BACKSTRESSES = {"prager": ("k",), "lemaitre_chaboche": ("CX", "Xsat")}
+
+
+class Curve(NamedTuple):
+    """Measured strains and stresses (MPa), and the rows at which the strain turns."""
+
+    strain: np.ndarray
+    stress: np.ndarray
+    turns: np.ndarray
 
 
 def law_start(name: str, plastic: np.ndarray, stress: np.ndarray) -> dict[Any, float]:
@@ -58,42 +66,46 @@ def hardening_lines(name: str, values: dict[Any, float], digits: int = 10) -> li
     return lines
 
 
-def measured_curve(options: argparse.Namespace) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return at most 60 strains and stresses beyond the first elastic range, and the turning points."""
-    reverses = bool(options.backstress) or options.hardening in REVERSING
-    strain, stress = read_curve(options.curve, reverses)
-    if options.plastic_strain:
-        strain = strain + stress / options.young
-    plastic = strain - stress / options.young
-    first = 0 if options.plastic_strain else int(np.argmax(plastic > 2e-4))
-    if not options.plastic_strain and not np.any(plastic > 2e-4):
+def reverses(law: str, backstresses: Sequence[str]) -> bool:
+    """Whether a law, with back-stresses, needs a curve that turns."""
+    return bool(backstresses) or law in REVERSING
+
+
+def measured_curve(path: str, young: float, turns_too: bool, plastic_strain: bool) -> Curve:
+    """Return at most 60 rows of a table beyond the first elastic range; `plastic_strain`: its strains are plastic."""
+    strain, stress = read_curve(path, turns_too)
+    if plastic_strain:
+        strain = strain + stress / young
+    plastic = strain - stress / young
+    first = 0 if plastic_strain else int(np.argmax(plastic > 2e-4))
+    if not plastic_strain and not np.any(plastic > 2e-4):
         first = len(strain)
     strain, stress = strain[first:], stress[first:]
     if len(strain) < 4:
-        raise Problem(f"{options.curve}: error: {len(strain)} rows beyond the elastic range of --young "
-                      f"{options.young:g}\n  expected: four or more")
+        raise Problem(f"{path}: error: {len(strain)} rows beyond the elastic range of --young "
+                      f"{young:g}\n  expected: four or more")
     turns = np.flatnonzero(np.diff(np.sign(np.diff(strain)))) + 1
-    if reverses and not len(turns):
-        raise Problem(f"{options.curve}: error: the strain increases throughout: no back-stress can be identified\n"
+    if turns_too and not len(turns):
+        raise Problem(f"{path}: error: the strain increases throughout: no back-stress can be identified\n"
                       "  expected: a curve with a reversal, such as tension and then compression")
     if len(strain) > 60:
         chosen = np.linspace(0, len(strain) - 1, 60).astype(int)
         chosen = np.unique(np.concatenate([chosen, turns]))
         strain, stress = strain[chosen], stress[chosen]
         turns = np.flatnonzero(np.diff(np.sign(np.diff(strain)))) + 1
-    return strain, stress, turns
+    return Curve(strain, stress, turns)
 
 
-def hardening_start(options: argparse.Namespace, strain: np.ndarray, stress: np.ndarray, turns: np.ndarray
+def hardening_start(law: str, backstresses: Sequence[str], curve: Curve, young: float
                    ) -> dict[Any, tuple[float, float, float]]:
     """Return the logarithms of the parameters to identify, with start and bounds."""
-    forward = slice(0, turns[0] + 1 if len(turns) else None)
-    plastic = strain[forward] - stress[forward] / options.young
-    start = law_start(options.hardening, plastic, stress[forward])
-    most = stress[forward].max()
-    for number, law in enumerate(options.backstress):
+    forward = slice(0, curve.turns[0] + 1 if len(curve.turns) else None)
+    stress = curve.stress[forward]
+    start = law_start(law, curve.strain[forward] - stress / young, stress)
+    most = stress.max()
+    for number, backstress in enumerate(backstresses):
         first = {"k": most, "CX": 15 * 8**number, "Xsat": 0.15 * most}
-        start.update({(law, number, name): first[name] for name in BACKSTRESSES[law]})
+        start.update({(backstress, number, name): first[name] for name in BACKSTRESSES[backstress]})
     highest = {"n": 1, "q": 1, "alpha": 1, "h": 1}
     return {name: (np.log(value), np.log(value / 300), np.log(highest.get(name, value * 300)))
             for name, value in start.items()}
@@ -106,13 +118,13 @@ def curve_table(strain: np.ndarray, stress: np.ndarray, values: np.ndarray, miss
               for i in some), f"root mean square over {len(strain)} rows: {missed_by:.2f} MPa"]
 
 
-def hardening(options: argparse.Namespace, points: Points, yields: str
-             ) -> tuple[list[str], list[str], list[str], tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """Identify a hardening law; return its lines, the table of values, notes, and the curve: strain, both stresses."""
-    strain, stress, turns = measured_curve(options)
-    sought = hardening_start(options, strain, stress, turns)
+def hardening(law: str, backstresses: Sequence[str], curve: Curve, points: Points, yields: str, starts: int, seed: int
+             ) -> tuple[list[str], list[str], list[str], np.ndarray]:
+    """Identify a hardening law from several starts; return its lines, the table of values, notes, and its stresses."""
+    strain, stress, _ = curve
+    sought = hardening_start(law, backstresses, curve, points.young)
     counts = np.ones(len(strain), int)
-    if options.backstress or options.hardening in REVERSING:  # the law of the back-stress is integrated step by step
+    if reverses(law, backstresses):  # the law of the back-stress is integrated step by step
         counts = np.maximum(1, np.ceil(np.abs(np.diff(strain, prepend=0)) / 0.002)).astype(int)
     path: LoadPath = (TENSION, 0, [([value, 0, 0, 0, 0, 0], count) for value, count in zip(strain, counts)])
     ends = np.cumsum(counts)
@@ -122,19 +134,19 @@ def hardening(options: argparse.Namespace, points: Points, yields: str
         return [None if rows is None else np.array([rows[0][i]["s11"] for i in ends]) for rows in found]
 
     def evaluate(sets: list[dict[Any, float]]) -> list[Any]:
-        return compute([hardening_lines(options.hardening, {key: np.exp(value) for key, value in one.items()})
+        return compute([hardening_lines(law, {key: np.exp(value) for key, value in one.items()})
                         for one in sets])
 
     weight = 1 / (np.abs(stress).max() * np.sqrt(len(stress)))
     fit = Fit(evaluate, sought, stress, np.full(len(stress), weight), 1e-6)
-    point, costs = fit.best(options.starts, 0.15, options.seed)
+    point, costs = fit.best(starts, 0.15, seed)
     found = dict(zip(sought, np.exp(point)))
-    lines, values = rounded(lambda digits: hardening_lines(options.hardening, found, digits), compute)
-    report(options.hardening, costs)
+    lines, values = rounded(lambda digits: hardening_lines(law, found, digits), compute)
+    report(law, costs)
     far = np.linalg.norm(weight * (values - stress))
     table = curve_table(strain, stress, values, far * np.abs(stress).max())
     notes = fit.left_open(point, "left as at the start", "other values of the rest may do as well") + fit.at_ends(point)
     if far > MISSED_CURVE:
         notes.append(f"the curve is missed by {100 * far:.1f} % of its largest stress: "
                      "another law may fit it better")
-    return lines, table, notes, (strain, stress, values)
+    return lines, table, notes, values

@@ -35,7 +35,8 @@ class Points:
     """Runs of the program with materials at single points, along given paths."""
 
     def __init__(self, program: str | Path, young: float, poisson: float) -> None:
-        self.program, self.elastic, self.runs = program, f"  young = {young:g}\n  poisson = {poisson:g}", 0
+        self.program, self.young, self.runs = program, young, 0
+        self.elastic = f"  young = {young:g}\n  poisson = {poisson:g}"
         self.refusal, self.bar = "", counter("identification", "runs")
 
     def deck(self, materials: Sequence[Sequence[str]], paths: list[LoadPath]) -> tuple[str, list[int]]:

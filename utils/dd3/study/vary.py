@@ -148,12 +148,12 @@ def value_of(folder: Path, name: str, fold: str) -> tuple[float, str]:
     return float(FOLDS[fold or "max"](values)), label + how
 
 
-def run_all(cases: list[Case], options: argparse.Namespace) -> None:
-    """Run the cases, several at a time, with a bar."""
+def run_all(cases: list[Case], program: Path, deck: Path, cores: int) -> None:
+    """Run the cases, as many at a time as there are cores for them, with a bar."""
     bar = counter("runs", "run")
     bar.total = len(cases)
-    with ThreadPoolExecutor(options.cores) as pool:
-        waiting = [pool.submit(make, case, options.program, options.deck) for case in cases]
+    with ThreadPoolExecutor(cores) as pool:
+        waiting = [pool.submit(make, case, program, deck) for case in cases]
         try:
             for one in waiting:
                 one.result()
@@ -165,17 +165,18 @@ def run_all(cases: list[Case], options: argparse.Namespace) -> None:
             bar.close()
 
 
-def run_by_snakemake(cases: list[Case], options: argparse.Namespace, work: Path, words: Sequence[str]) -> None:
-    """Run the cases by snakemake, with further options of it."""
+def run_by_snakemake(cases: list[Case], program: Path, deck: Path, cores: int, work: Path, words: Sequence[str]
+                     ) -> None:
+    """Run the cases by snakemake in a folder, with further options of it."""
     if importlib.util.find_spec("snakemake") is None:
         raise Problem(errors.missing("snakemake"))
-    study = {"program": str(options.program), "deck": str(options.deck.resolve()),
+    study = {"program": str(program), "deck": str(deck.resolve()),
              "cases": {case.folder.name: case.values for case in cases}}
     (work / STUDY).write_text(json.dumps(study, indent=1), encoding="utf-8")
-    cores = [] if "--profile" in words else ["--cores", str(options.cores)]
+    limit = [] if "--profile" in words else ["--cores", str(cores)]
     done = subprocess.run([sys.executable, "-m", "snakemake", "--snakefile",
                            str(Path(__file__).with_name("combinations.smk")), "--directory", str(work), "--keep-going",
-                           "--rerun-incomplete", "--rerun-triggers", "mtime", "--quiet", "all", *cores, *words],
+                           "--rerun-incomplete", "--rerun-triggers", "mtime", "--quiet", "all", *limit, *words],
                           check=False)
     for case in cases:
         case.state = state_of(case.folder)
@@ -309,9 +310,9 @@ def main(words: Sequence[str] | None = None) -> None:
     work = made_folder(options.work or options.deck.with_suffix(".study"))
     cases = combinations(options.vary, work)
     if further:
-        run_by_snakemake(cases, options, work, further)
+        run_by_snakemake(cases, options.program, options.deck, options.cores, work, further)
     else:
-        run_all(cases, options)
+        run_all(cases, options.program, options.deck, options.cores)
     labels: list[str] = [""] * len(options.result)
     for case in cases:
         if case.state == "reached":

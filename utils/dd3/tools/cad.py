@@ -24,7 +24,7 @@ from scipy.spatial import cKDTree
 from dd3.account import Account
 from dd3.errors import Problem
 from dd3.progress import Progress
-from dd3.tools import faces, fillets, moved
+from dd3.tools import faces, mitres, moved
 from dd3.tools.cad_account import enter_cad
 from dd3.tools.closest import closest
 from dd3.tools.cut import cut, is_closed, planes_through, planes_through_pole
@@ -32,7 +32,7 @@ from dd3.tools.division import Division
 from dd3.tools.joints import find_joints, folded, kinks, to_chords
 from dd3.tools.limits import limited
 from dd3.tools.nagata import groups
-from dd3.tools.parameters import filled, parameters_of
+from dd3.tools.parameters import filled, length_of, parameters_of
 from dd3.tools.report import REACH, named, up
 from dd3.tools.settings import CAD, ToolSettings
 from dd3.tools.surface import Surface, areas_at, from_nodes, grid, points_at
@@ -132,7 +132,7 @@ def refuse_cut(path: Path) -> None:
 def free_edges(gmsh: Any) -> list[int]:
     """Return the edges with one face, those without length and seams left out."""
     single = [tag for _, tag in gmsh.model.getEntities(1) if len(gmsh.model.getAdjacencies(1, tag)[0]) == 1]
-    return [tag for tag in single if gmsh.model.occ.getMass(1, tag) > 1e-9 and not is_seam(gmsh, tag)]
+    return [tag for tag in single if length_of(gmsh, tag) and not is_seam(gmsh, tag)]
 
 
 def find_gaps(gmsh: Any) -> list[tuple[float, int, int]]:
@@ -525,11 +525,11 @@ def read_cad(gmsh: Any, path: Path, options: ToolSettings, progress: Progress) -
         up = (0, 0, -1 if options.side == "die" else 1)
         tags = faces.side_of_sheet(gmsh, path, tags, moved.rotation(options.rotate).T @ up)
     if options.sharp and in_solids.issuperset(tags):
-        origin = fillets.rounded(gmsh, tags, options.sharp)
+        origin, said = mitres.rounded(gmsh, tags, options.sharp)
         file_tag = {tag: file_tag.get(old, 0) for tag, old in origin.items()}
         tags = list(file_tag)
         in_solids = set(tags)
-        model.notes.append(fillets.said_of(options.sharp))
+        model.notes += said
     twins = doubled(gmsh, tags)
     if twins:
         model.notes.append(said_of_doubled(twins))

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from dd3.tools.parameters import pole_parameters
+from dd3.tools.parameters import length_of, pole_parameters
 
 # Parts of the size of the box within which two planes count as one.
 SAME_PLANE = 0.02
@@ -19,7 +19,7 @@ def is_closed(gmsh: Any, tag: int) -> bool:
     if gmsh.model.getType(2, tag) == "Plane":
         return False
     edges = [abs(edge) for _, edge in gmsh.model.getBoundary([(2, tag)], combined=False, oriented=True)]
-    edges = [edge for edge in edges if gmsh.model.occ.getMass(1, edge) > 1e-9]
+    edges = [edge for edge in edges if length_of(gmsh, edge)]
     return any(edges.count(edge) == 1 for edge in edges) and any(
         len({point for _, point in gmsh.model.getBoundary([(1, edge)], combined=False)}) < 2 for edge in edges)
 
@@ -30,7 +30,7 @@ def planes_through_pole(gmsh: Any, tag: int) -> list[tuple[np.ndarray, np.ndarra
     if gmsh.model.getType(2, tag) in ("Plane", "Sphere", "Cone"):
         return []
     edges = {abs(edge) for _, edge in gmsh.model.getBoundary([(2, tag)], combined=False, oriented=False)}
-    pole = next((edge for edge in edges if gmsh.model.occ.getMass(1, edge) <= 1e-9), None)
+    pole = next((edge for edge in edges if not length_of(gmsh, edge)), None)
     if pole is None:
         return []
     along = int(np.isnan(pole_parameters(gmsh, pole, tag))[1])

@@ -5,6 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from dd3.tools.parameters import length_of
+
 # Turn of the normal or of the tangent over an edge's division before it is halved, degrees.
 TURN = 45.0
 # Corner angles of a face with a regular mesh, degrees.
@@ -46,7 +48,7 @@ class Division:
                 self.turn[edge, tag] = self.edge_turn(gmsh, edge, tag)
         low, high = np.reshape(gmsh.model.getBoundingBox(-1, -1), (2, 3))
         self.size = float(np.linalg.norm(high - low))
-        self.length = {edge: gmsh.model.occ.getMass(1, edge) for edge, _ in self.turn}
+        self.length = {edge: length_of(gmsh, edge) for edge, _ in self.turn}
         self.corners = {tag: self.corners_of(gmsh, loop) for tag, loop in self.loops.items()}
         self.regular = {tag for tag, corners in self.corners.items() if corners}
         self.curved = {tag: gmsh.model.getType(2, tag) != "Plane" for tag in tags}

@@ -10,6 +10,7 @@ import numpy as np
 
 from dd3.errors import Problem
 from dd3.tools.nagata import groups
+from dd3.tools.parameters import length_of
 
 # Angle between the normals of two faces along their edge below which they join smoothly, degrees.
 SMOOTH = 5.0
@@ -68,7 +69,7 @@ def smooth_groups(gmsh: Any, tags: list[int]) -> list[set[int]]:
 
 def joins_smoothly(gmsh: Any, edge: int, first: int, second: int) -> bool:
     """Tell whether the normals of two faces agree along their edge, up to their signs."""
-    if gmsh.model.occ.getMass(1, edge) <= 1e-9:
+    if not length_of(gmsh, edge):
         return False
     low, high = (bound[0] for bound in gmsh.model.getParametrizationBounds(1, edge))
     t = low + PLACES * (high - low)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Fillets in place of the sharp edges of one side of a sheet or a block, made in the CAD by OpenCASCADE before it is
 meshed."""
+from collections import Counter
+from collections.abc import Iterable
 from itertools import product
 from typing import Any
 
@@ -11,35 +13,47 @@ from dd3.tools.faces import spans
 
 # Distance over the size of the model within which a point is on a face; cosine between normals there.
 ON, PARALLEL = 1e-6, 0.999
-# Parts of the range of the parameters at which a point inside a face is sought, the middle first.
-PARTS = 0.5, 0.37, 0.63, 0.21, 0.79, 0.08, 0.92, 0.02, 0.98
+# Divisions of the range of the parameters at which points inside a face are sought, up to this number of points.
+DIVISIONS, POINTS = (4, 12, 40, 130), 8
 
 
 def rounded(gmsh: Any, side: list[int], edges: dict[int, float]) -> dict[int, int]:
     """Round edges of one side of a solid by a radius each, mm; return the faces of that side with the faces of the file
     that they are of, 0 for a fillet.
 
-    Faces that were there before are known by a point of theirs and its normal: the fillets shorten them only.
+    Faces that were there before are known by points and normals.
     """
     occ = gmsh.model.occ
-    low, high = np.reshape(gmsh.model.getBoundingBox(-1, -1), (2, 3))
-    size = float(np.linalg.norm(high - low))
-    before = [tag for _, tag in gmsh.model.getEntities(2)]
-    volumes = [tag for _, tag in gmsh.model.getEntities(3)
-               if set(side) <= {abs(face) for _, face in gmsh.model.getBoundary([(3, tag)], combined=False)}]
+    tolerance, volume = tolerance_of(gmsh), volume_of(gmsh, side)
+    before = faces_of_volume(gmsh, volume)
     try:
-        new = occ.fillet(volumes[:1], list(edges), list(edges.values()), removeVolume=False)
+        new = occ.fillet([volume], list(edges), list(edges.values()), removeVolume=False)
         occ.synchronize()
     except Exception:  # Gmsh raises nothing more specific
         raise Problem(f"the sharp edges {spans(list(edges))} cannot be rounded by up to {max(edges.values()):.3g} mm"
                       + cause(gmsh, edges)) from None
-    after = {abs(tag) for _, tag in gmsh.model.getBoundary(new, combined=False)}
     origin = {}
-    for tag in sorted(after):
-        old = face_at(gmsh, *interior(gmsh, tag), before, ON * size)
+    for tag in faces_of_volume(gmsh, new[0][1]):
+        old = tag if tag in before else face_of(gmsh, tag, before, tolerance)
         if old is None or old in side:
             origin[tag] = old or 0
     return origin
+
+
+def faces_of_volume(gmsh: Any, volume: int) -> list[int]:
+    """Return the faces of a solid."""
+    return sorted({abs(face) for _, face in gmsh.model.getBoundary([(3, volume)], combined=False)})
+
+
+def volume_of(gmsh: Any, side: list[int]) -> int:
+    """Return the solid of faces."""
+    return next(tag for _, tag in gmsh.model.getEntities(3) if set(side) <= set(faces_of_volume(gmsh, tag)))
+
+
+def tolerance_of(gmsh: Any) -> float:
+    """Return the distance up to which points are on faces and edges, mm."""
+    low, high = np.reshape(gmsh.model.getBoundingBox(-1, -1), (2, 3))
+    return ON * float(np.linalg.norm(high - low))
 
 
 def cause(gmsh: Any, edges: dict[int, float]) -> str:
@@ -52,12 +66,18 @@ def cause(gmsh: Any, edges: dict[int, float]) -> str:
             "where fillets of other edges end: round them in the CAD program, before those")
 
 
-def interior(gmsh: Any, tag: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return a point inside a face and the unit normal there."""
+def face_of(gmsh: Any, tag: int, tags: list[int], tolerance: float) -> int | None:
+    """Return which face lies on another one, in most of some points inside of this, None without one."""
     low, high = (np.array(bound) for bound in gmsh.model.getParametrizationBounds(2, tag))
-    uv = np.array([low + np.array(pair) * (high - low) for pair in product(PARTS, PARTS)])
-    inside = next((pair for pair in uv if gmsh.model.isInside(2, tag, pair, True)), uv[0])
-    return np.array(gmsh.model.getValue(2, tag, inside)), np.array(gmsh.model.getNormal(tag, inside))
+    inside: list[np.ndarray] = []
+    for count in DIVISIONS:
+        uv = low + np.array(list(product(range(1, count), repeat=2))) / count * (high - low)
+        inside = [pair for pair in uv if gmsh.model.isInside(2, tag, pair, True)]
+        if len(inside) >= POINTS:
+            break
+    found = [face_at(gmsh, np.array(gmsh.model.getValue(2, tag, pair)), np.array(gmsh.model.getNormal(tag, pair)), tags,
+                     tolerance) for pair in inside[::max(1, len(inside) // POINTS)]]
+    return Counter(found).most_common(1)[0][0] if found else None
 
 
 def face_at(gmsh: Any, point: np.ndarray, normal: np.ndarray, tags: list[int], tolerance: float) -> int | None:
@@ -76,5 +96,9 @@ def face_at(gmsh: Any, point: np.ndarray, normal: np.ndarray, tags: list[int], t
 
 def said_of(edges: dict[int, float]) -> str:
     """Return what is said of rounded edges."""
-    radii = sorted(set(edges.values()))
-    return f"sharp edges rounded by {' and '.join(f'{radius:.4g}' for radius in radii)} mm: {len(edges)}"
+    return f"sharp edges rounded by {in_words(edges.values())}: {len(edges)}"
+
+
+def in_words(radii: Iterable[float]) -> str:
+    """Return different radii in words."""
+    return " and ".join(sorted({f"{radius:.4g}" for radius in radii}, key=float)) + " mm"

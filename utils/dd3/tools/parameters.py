@@ -10,17 +10,26 @@ ROUND = "Cylinder", "Cone", "Sphere", "Torus", "Surface of Revolution"
 FEWEST = 4
 
 
+def length_of(gmsh: Any, edge: int) -> float:
+    """Return the length of an edge, mm, 0 of a pole: it has no curve in space, though OpenCASCADE gives those at the
+    corners of fillets a length of its tolerance."""
+    length = gmsh.model.occ.getMass(1, edge)
+    if gmsh.model.getType(1, edge) == "Unknown" and len(set(gmsh.model.getBoundary([(1, edge)], combined=False))) < 2:
+        return 0.0
+    return float(length) if length > 1e-9 else 0.0
+
+
 def parameters_of(gmsh: Any, tag: int, count: int) -> np.ndarray:
     """Return the parameters of the nodes on a face, by label; NaN for other nodes, for those on a seam, and for the
     parameter along a pole."""
     table = np.full((count, 2), np.nan)
     bounds = [abs(edge) for _, edge in gmsh.model.getBoundary([(2, tag)], combined=False, oriented=True)]
     for edge in sorted((edge for edge in bounds if bounds.count(edge) == 1),
-                       key=lambda edge: gmsh.model.occ.getMass(1, edge), reverse=True):
+                       key=lambda edge: length_of(gmsh, edge), reverse=True):
         known, _, t = gmsh.model.mesh.getNodes(1, edge, includeBoundary=True, returnParametricCoord=True)
         if len(known) == len(t):
             table[known.astype(int)] = np.reshape(gmsh.model.reparametrizeOnSurface(1, edge, t, tag), (-1, 2))
-        if gmsh.model.occ.getMass(1, edge) <= 1e-9:
+        if not length_of(gmsh, edge):
             table[known.astype(int)] = pole_parameters(gmsh, edge, tag)
     known, _, uv = gmsh.model.mesh.getNodes(2, tag, includeBoundary=False, returnParametricCoord=True)
     if 2 * len(known) == len(uv):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Flat patches between curves of a horizontal plane, by Gmsh."""
 from dataclasses import dataclass
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,9 @@ from dd3.tools.division import OPTIONS
 
 # Elements along an outer straight side at least.
 ALONG = 4
+# What is tried, one after the other, until a mesh keeps to its borders: parts of the size; and of each Gmsh's numbers of
+# the pairing of triangles, by Blossom or a simple one, and of the exchange and shift of elements.
+SMALLER, RECOMBINED = (1.0, 0.7, 0.5), ((1, 5), (1, 0), (0, 0))
 # Relative difference of equal areas.
 SAME_AREA = 1e-9
 
@@ -68,8 +72,8 @@ def flat(gmsh: Any, loops: list[list[Side]], size: float) -> np.ndarray:
 def meshed(gmsh: Any, loops: list[list[Side]], size: float) -> np.ndarray:
     """Return the corners (element, 4, 2) of quadrilaterals between closed lines of chords; each chord has two.
 
-    Gmsh's exchange and shift of elements takes nodes out of the border where two chords are near a line; it is left out
-    then.
+    Gmsh's exchange and shift of elements takes nodes out of the border where two chords are near a line, and its
+    elements may reach over a short chord between long ones.
     """
     geo = gmsh.model.geo
     tags = []
@@ -90,11 +94,12 @@ def meshed(gmsh: Any, loops: list[list[Side]], size: float) -> np.ndarray:
     for name, value in OPTIONS.items():
         gmsh.option.setNumber(name, value)
     gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", 0)
-    gmsh.option.setNumber("Mesh.MeshSizeMax", size)
     gmsh.option.setNumber("Mesh.MeshSizeMin", 0.0)
     gmsh.model.mesh.setSizeCallback(lambda dim, tag, x, y, z, size: size)
     within = area_of(chords(loops[0])) - sum(area_of(chords(loop)) for loop in loops[1:])
-    for exchange in (5, 0):
+    for part, (pairing, exchange) in product(SMALLER, RECOMBINED):
+        gmsh.option.setNumber("Mesh.MeshSizeMax", part * size)
+        gmsh.option.setNumber("Mesh.RecombinationAlgorithm", pairing)
         gmsh.option.setNumber("Mesh.RecombineOptimizeTopology", exchange)
         gmsh.option.setNumber("Mesh.RecombineNodeRepositioning", bool(exchange))
         gmsh.model.mesh.clear()
