@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from test_pictures import made_run
 
-from dd3.plot import scale
+from dd3.plot import scale, skins
 from dd3.plot import sheet as pictures
 
 
@@ -88,13 +88,13 @@ def length_of(edges):
 def test_whole_sheet(tmp_path):
     """Check that a sheet completed at a plane of symmetry has no faces on it, and common nodes."""
     run = pictures.Run(made_run(tmp_path))
-    one, two = (pictures.sheet_skin(run.shape(0), axes) for axes in ((), ("x", "y")))
+    one, two = (skins.sheet_skin(run.shape(0), axes) for axes in ((), ("x", "y")))
     assert one.n_cells == 6 and two.n_cells == 4 * (6 - 2)
     assert two.n_points == 2 * 9 and two.is_all_triangles is False
     assert two.n_open_edges == 0
-    assert length_of(pictures.sharp_edges(two)) == pytest.approx(2 * 8 + 4)  # none on the planes
+    assert length_of(skins.sharp_edges(two)) == pytest.approx(2 * 8 + 4)  # none on the planes
     # A tool that goes beyond the plane, here from -1 to 1, is cut there.
     patches = [(np.array([[[-1, -1, 0], [1, -1, 0]], [[-1, 1, 0], [1, 1, 0]]], float), np.ones((2, 2)))]
-    place = pictures.Placement(np.eye(3), np.zeros(3))
-    tool = pictures.tool_skin(patches, place, ("x", "y"), np.array([0.5, 0.5, 0.0]))
-    assert tool.area == pytest.approx(4.0) and length_of(pictures.sharp_edges(tool)) == pytest.approx(8.0)
+    place = skins.Placement(np.eye(3), np.zeros(3))
+    tool = skins.tool_skin(patches, place, ("x", "y"), np.array([0.5, 0.5, 0.0]))
+    assert tool.area == pytest.approx(4.0) and length_of(skins.sharp_edges(tool)) == pytest.approx(8.0)

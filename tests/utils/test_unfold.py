@@ -11,7 +11,8 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from dd3.curve import read_curves
-from dd3.unfold import Balance, Sheet, Triangles, prepared, rims, unfolded
+from dd3.triangles import Triangles, prepared, rims
+from dd3.unfold import Balance, Sheet, unfolded
 
 HERE = Path("part")
 

@@ -21,7 +21,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from dataclasses import field as dataclass_field
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -29,18 +29,18 @@ import pyvista as pv
 from matplotlib.figure import Figure
 
 from dd3 import places, rendering
-from dd3.bound import closed_skin
 from dd3.command import new_parser
 from dd3.errors import LOG, Problem
 from dd3.fields import AT, Fields, text_of
 from dd3.plot import levels, scale
 from dd3.plot.beads import draw_beads
 from dd3.plot.scale import Scale
+from dd3.plot.skins import SHARP, Box, Placement, diagonal, reflected, sharp_edges, sheet_skin, tool_skin
 from dd3.programs import add_program, command, find_program, launch, setting
 from dd3.progress import each
 from dd3.run import file_of, read_job
 from dd3.sheet import AXES
-from dd3.tools.surface import Patches, points_on, read_patches
+from dd3.tools.surface import Patches, read_patches
 
 VIEWS = {  # direction from the sheet to the camera, and the upward direction
     "iso": ((-0.9, -1.6, 0.9), (0, 0, 1)),
@@ -53,25 +53,8 @@ VIEWS = {  # direction from the sheet to the camera, and the upward direction
 }
 BAR_HEIGHT = 100  # pixels of the strip below the pictures that holds the colour bar
 BAR_CHARACTERS = 45  # of the numbers at a colour bar, at most
-POINTS = 200000  # of a tool, about; at most 25 x 25 of a patch
-SHARP = 40  # angle between faces of the sheet or of a tool above which their edge is sharp, degrees
-ON_PLANE = 1e-6  # distance from a plane of symmetry of what lies on it, over the size of a surface
 FIELD, DOTS = "equivalent_plastic_strain", 150  # field of a run; pixels of an inch of a figure
 TOOL_COLOURS = ["#8d99a6", "#a69b8d", "#93a68d", "#a08da6"]
-
-Box = tuple[np.ndarray, np.ndarray]
-
-
-class Placement(NamedTuple):
-    """Place of a tool: the directions of the axes of its file, one after the other, and the displacement."""
-
-    axes: np.ndarray
-    displacement: np.ndarray
-
-    def of(self, points: np.ndarray) -> np.ndarray:
-        """Return points of the tool's file at their place."""
-        return points @ self.axes + self.displacement
-
 
 @dataclass
 class Style:
@@ -144,68 +127,6 @@ class Run(Fields):
         return {name: Placement(*of_tool) for name, *of_tool in zip(names, axes, displacements, strict=True)}
 
 
-def tool_surface(patches: Patches, placement: Placement, count: int = POINTS) -> pv.PolyData:
-    """Return the surface of a tool at its place, of about `count` points."""
-    finest = max(2, min(24, round(math.sqrt(count / len(patches)))))
-    points, faces, first = [], [], 0
-    for shape in {weights.shape for _, weights in patches}:
-        alike = [patch for patch in patches if patch[1].shape == shape]
-        places = [np.linspace(0, 1, 2 if size == 2 else finest + 1) for size in shape]
-        xyz = points_on(np.array([p for p, _ in alike]), np.array([weights for _, weights in alike]), *places)
-        points.append(placement.of(xyz.reshape(-1, 3)))
-        number = first + np.arange(xyz[..., 0].size).reshape(xyz.shape[:3])
-        corners = number[:, :-1, :-1], number[:, :-1, 1:], number[:, 1:, 1:], number[:, 1:, :-1]
-        faces.append(np.stack(corners, axis=-1).reshape(-1, 4))
-        first += number.size
-    return pv.PolyData(np.concatenate(points), np.insert(np.concatenate(faces), 0, 4, axis=1))
-
-
-def reflected(mesh: Any, axes: Sequence[str]) -> list[Any]:
-    """Return the mesh and its mirror images in the planes normal to the axes."""
-    parts = [mesh]
-    for axis in axes:
-        parts += [part.reflect(normal_of(axis), point=(0.0, 0.0, 0.0)) for part in parts]
-    return parts
-
-
-def normal_of(axis: str) -> tuple[float, ...]:
-    """Return the unit vector along an axis."""
-    return tuple(float(axis == other) for other in AXES)
-
-
-def completed(skin: pv.PolyData, axes: Sequence[str]) -> pv.PolyData:
-    """Return a surface and its mirror images as one, without seams."""
-    return pv.merge(reflected(skin, axes), merge_points=False).clean(tolerance=ON_PLANE, absolute=False)
-
-
-def sheet_skin(mesh: pv.UnstructuredGrid, axes: Sequence[str]) -> pv.PolyData:
-    """Return the surface of a sheet, completed at its planes of symmetry; the faces on these are left out."""
-    skin = closed_skin(mesh).extract_surface(algorithm="dataset_surface", nonlinear_subdivision=2)
-    near = ON_PLANE * diagonal((skin.points.min(axis=0), skin.points.max(axis=0)))
-    for axis in axes:
-        off = np.abs(skin.points[:, AXES.index(axis)]) > near
-        cut = [cell for cell, nodes in enumerate(skin.irregular_faces) if not off[nodes].any()]
-        skin = skin.remove_cells(cut) if cut else skin
-    return completed(skin, axes)
-
-
-def tool_skin(patches: Patches, placement: Placement, axes: Sequence[str], inside: np.ndarray) -> pv.PolyData:
-    """Return the surface of a tool at its place, completed at the planes of symmetry; what lies beyond them, seen from
-    a point inside, is left out."""
-    skin = tool_surface(patches, placement)
-    for axis in axes:
-        skin = skin.clip(normal_of(axis), origin=(0.0, 0.0, 0.0), invert=bool(inside[AXES.index(axis)] < 0))
-    return completed(skin, axes)
-
-
-def sharp_edges(skin: pv.PolyData) -> pv.PolyData:
-    """Return the outer edges of a surface, and those between faces at an angle."""
-    # Mirror images and neighbouring patches may be turned the other way.
-    turned = skin.clean(tolerance=ON_PLANE, absolute=False).compute_normals(point_normals=False)
-    return turned.extract_feature_edges(boundary_edges=True, feature_edges=True, manifold_edges=False,
-                                        non_manifold_edges=False, feature_angle=SHARP)
-
-
 def add_surface(plotter: Any, skin: pv.PolyData, **options: Any) -> None:
     """Add a surface, smooth between its sharp edges, and these; options are those of pyvista."""
     plotter.add_mesh(skin, smooth_shading=True, split_sharp_edges=True, feature_angle=SHARP, show_scalar_bar=False,
@@ -258,11 +179,6 @@ def add_bar(plotter: Any, label: str, limits: Scale, colours: str | list[str] | 
     bar.SetUseCustomLabels(True)
     for text in (bar.GetTitleTextProperty(), bar.GetLabelTextProperty()):
         rendering.use_font(text)
-
-
-def diagonal(box: Box) -> float:
-    """Return the length of the diagonal of a box."""
-    return float(np.linalg.norm(box[1] - box[0]))
 
 
 def box_of(run: Run, steps: Sequence[int], mirror: Sequence[str], tools: dict[str, Patches]) -> Box:

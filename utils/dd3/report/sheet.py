@@ -10,6 +10,7 @@ from matplotlib.patches import Patch
 from dd3 import computed, forming_limit, measured, springback, verdict
 from dd3.account import Account
 from dd3.plot import sheet as pictures
+from dd3.plot import skins
 from dd3.plot.figures import new_figure
 from dd3.report.page import Report, section_planes, table
 from dd3.section import Section, in_plane
@@ -70,7 +71,7 @@ def draw_zones(report: Report, zone: np.ndarray) -> None:
     # A cell has the worst zone of its nodes and its own.
     mesh.cell_data["zone"] = np.array([max(zone[mesh.get_cell(i).point_ids].max(), zone[mesh.n_points + i])
                                        for i in range(mesh.n_cells)])
-    pictures.add_surface(plotter, pictures.sheet_skin(mesh, style.mirror), scalars="zone",
+    pictures.add_surface(plotter, skins.sheet_skin(mesh, style.mirror), scalars="zone",
                          cmap=list(forming_limit.COLOURS), clim=[-0.5, len(forming_limit.ZONES) - 0.5])
     pictures.aim(plotter, pictures.box_of(report.run, [report.last], style.mirror, {}), style)
     plotter.screenshot(report.picture("zones"))

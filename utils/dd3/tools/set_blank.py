@@ -11,7 +11,8 @@ from scipy.spatial import cKDTree
 from dd3.errors import Problem
 from dd3.tools.plane import crosses, inside
 from dd3.tools.surface import Surface, areas_at, grid, points_at
-from dd3.unfold import Balance, Sheet, Triangles, area_vectors, prepared, rims, unfolded
+from dd3.triangles import Triangles, area_vectors, prepared, rims
+from dd3.unfold import Balance, Sheet, unfolded
 
 # Triangles of a patch, and the number of patches up to which it gets as many.
 TRIANGLES = {8: 1000.0, 4: 2000.0, 2: np.inf}

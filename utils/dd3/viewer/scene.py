@@ -13,7 +13,7 @@ import numpy as np
 
 from dd3 import forming_limit, springback, verdict
 from dd3.fields import COMPONENTS, text_of
-from dd3.plot import scale
+from dd3.plot import scale, skins
 from dd3.plot import sheet as pictures
 from dd3.plot.beads import draped
 from dd3.sheet import AXES, Sheet
@@ -222,8 +222,8 @@ class Scene:
         """Return the surfaces of the tools whose files are there."""
         numbers = {tool["name"]: i + 1 for i, tool in enumerate(self.run.job["tools"])}
         for name, patches in pictures.find_tools(self.run).items():
-            skin = pictures.tool_surface(patches, pictures.Placement(np.eye(3), np.zeros(3)), TOOL_POINTS)
-            edges = pictures.sharp_edges(skin)
+            skin = skins.tool_surface(patches, skins.Placement(np.eye(3), np.zeros(3)), TOOL_POINTS)
+            edges = skins.sharp_edges(skin)
             quads = skin.faces.reshape(-1, 5)[:, 1:]
             add = self.arrays.add_whole
             yield {"name": name, "number": numbers.get(name, 0),
