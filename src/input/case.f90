@@ -277,14 +277,15 @@ module dd3_input_case
     type(location_t) :: at
   end type tool_gap_t
 
-  !> A prescribed displacement of nodes.
+  !> A prescribed displacement of nodes, or the coordinate to which they move.
   type :: displace_spec_t
     !> Node set.
     character(len=:), allocatable :: set
     !> Axis: 1, 2, 3.
     integer :: axis = 1
-    !> Displacement over the phase, mm.
+    !> Displacement over the phase, or coordinate at its end, mm.
     real(wp) :: value = 0.0_wp
+    logical :: is_coordinate = .false.
     type(location_t) :: at
   end type displace_spec_t
 

@@ -78,7 +78,7 @@ contains
     allocate (phase%hold(n_valid("hold")), phase%release(n_valid("release")))
     allocate (phase%move(n_valid("move")), phase%press(n_valid("press")))
     allocate (phase%gap(n_valid("gap")), phase%turn(n_valid("turn")), phase%tilt(n_valid("tilt")))
-    allocate (phase%displace(n_valid("displace")), phase%free(n_valid("free")))
+    allocate (phase%displace(n_valid("displace") + n_valid("place")), phase%free(n_valid("free")))
     allocate (phase%load(n_valid("load")), phase%pressure(n_valid("pressure")))
     allocate (phase%motion(n_valid("rotate") + n_valid("bend")))
     do e = 1, block%n_entry
@@ -111,7 +111,10 @@ contains
             phase%tilt(i)%pivot = number(:3)
             phase%tilt(i)%stiffness = number(4)
             phase%tilt(i)%at = at
-          case ("displace")
+          case ("displace", "place")
+            ! The places follow the displacements.
+            if (entry%key == "place") i = i + n_valid("displace")
+            phase%displace(i)%is_coordinate = entry%key == "place"
             phase%displace(i)%set = name
             phase%displace(i)%axis = nint(number(1))
             phase%displace(i)%value = number(2)

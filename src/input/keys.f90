@@ -339,6 +339,8 @@ contains
           form="tool"), &
       row("displace", kind_other, "mm", "-", "displacement of nodes over the phase", &
           repeatable=.true., form="set axis number"), &
+      row("place", kind_other, "mm", "-", "coordinate to which the nodes move over the phase, "// &
+          "from where they are", repeatable=.true., form="set axis number"), &
       row("free", kind_other, "", "-", &
           "directions that displace has led until now; their reactions turn with the sheet "// &
           "and fall linearly over the phase", &
@@ -356,8 +358,8 @@ contains
           "section of a bar bent to an arc: set, point at its fixed end, direction of the "// &
           "axis, angle", repeatable=.true., &
           form="set number number number number number number number"), &
-      row("table", kind_reals, "", "-", "progress and factor on displace, rotate, bend, load "// &
-          "and pressure, in pairs from 0 0 on; default: 0 0 1 1", count=0), &
+      row("table", kind_reals, "", "-", "progress and factor on displace, place, rotate, bend, "// &
+          "load and pressure, in pairs from 0 0 on; default: 0 0 1 1", count=0), &
       row("move_table", kind_reals, "", "-", "progress and factor on move and gap, in pairs "// &
           "from 0 0 on; default: 0 0 1 1", count=0), &
       row("turn_table", kind_reals, "", "-", "progress and factor on the angles of turn, in "// &

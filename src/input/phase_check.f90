@@ -223,8 +223,8 @@ contains
     if (phase%control == 0) then
       if (n_actions == 0) then
         call errors%push_input(phase%source%opened, "the phase has no action", &
-            "at least one of move, turn, gap, press, displace, free, load, release, unload, "// &
-            "rotate, bend, pressure, gravity", code="E144")
+            "at least one of move, turn, gap, press, displace, place, free, load, release, "// &
+            "unload, rotate, bend, pressure, gravity", code="E144")
       end if
       if (phase%trial > 1.0_wp) then
         call errors%push_input(phase%source%at("trial"), "trial = "//to_text(phase%trial)// &

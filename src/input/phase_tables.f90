@@ -21,7 +21,8 @@ contains
     type(error_list_t), intent(inout) :: errors
 
     call check_table(phase, "table", phase%table, size(phase%displace) + size(phase%motion) &
-        + size(phase%load) + size(phase%pressure), "displace, rotate, bend, load or pressure", &
+        + size(phase%load) + size(phase%pressure), &
+        "displace, place, rotate, bend, load or pressure", &
         errors)
     call check_table(phase, "move_table", phase%move_table, size(phase%move) + size(phase%gap), &
         "move or gap", errors)

@@ -131,7 +131,7 @@ contains
     do i = 1, size(phase%displace)
       associate (this => phase%displace(i))
         call check_direction(mesh, this%set, this%at, this%axis, held .and. &
-            abs(this%value) > 0.0_wp, moved, errors)
+            (this%is_coordinate .or. abs(this%value) > 0.0_wp), moved, errors)
       end associate
     end do
     do i = 1, size(phase%motion)
@@ -167,8 +167,8 @@ contains
           " by *BOUNDARY", "nodes that are free in this direction", code="E145")
     else if (any(moved(axis, node))) then
       call errors%push_input(at, "a node of '"//set//"' is displaced twice along "// &
-          axis_name(axis)//" in this phase", "one of displace, rotate and bend for each node", &
-          code="E122")
+          axis_name(axis)//" in this phase", &
+          "one of displace, place, rotate and bend for each node", code="E122")
     end if
     moved(axis, node) = .true.
   end subroutine check_direction

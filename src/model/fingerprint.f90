@@ -212,8 +212,9 @@ contains
       end do
       do s = 1, size(phase%motion)
         associate (motion => phase%motion(s))
-          call digest%add([motion%bends])
+          call digest%add([motion%bends, motion%places, motion%prescribes])
           call digest%add([motion%point, motion%axis, motion%start, motion%angle])
+          call digest%add([motion%coordinate])
           call digest%add(motion%node)
         end associate
       end do

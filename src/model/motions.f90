@@ -1,13 +1,13 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Curved motions of node sets over a phase: rotation about an axis, and the motion of the end
-!> section of a bar that is bent to an arc while its middle line keeps its length: at the angle phi
-!> of the section the arc has the radius L/phi.
+!> Motions of node sets over a phase that depend on where the nodes are: rotation about an axis, the
+!> motion of the end section of a bar that is bent to an arc while its middle line keeps its length
+!> (at the angle phi of the section the arc has the radius L/phi), and the motion to a coordinate.
 module dd3_model_motions
   use dd3_base_kinds, only : wp, pi
   use dd3_linalg_tensor, only : cross
   implicit none
   private
-  public :: motion_t, motion_displacement, new_motion
+  public :: motion_t, motion_displacement, new_motion, new_placement
 
   !> Components of a unit vector below this count as zero.
   real(wp), parameter :: aligned = 1.0e-12_wp
@@ -24,6 +24,9 @@ module dd3_model_motions
     real(wp) :: start = 0.0_wp, angle = 0.0_wp
     !> Middle line of the straight bar: its direction, and its length, mm.
     real(wp) :: along(3) = 0.0_wp, length = 0.0_wp
+    !> Whether the nodes move to a coordinate, mm, along the direction that is prescribed.
+    logical :: places = .false.
+    real(wp) :: coordinate = 0.0_wp
     !> Directions that the motion prescribes: all, but for that of the axis if it is x, y or z.
     logical :: prescribes(3) = .true.
   end type motion_t
@@ -59,6 +62,20 @@ contains
     self%along = self%along/max(self%length, tiny(1.0_wp))
   end subroutine new_motion
 
+  !> Make the motion of a set to a coordinate.
+  pure subroutine new_placement(self, node, axis, coordinate)
+    type(motion_t), intent(out) :: self
+    integer, intent(in) :: node(:), axis
+    !> mm.
+    real(wp), intent(in) :: coordinate
+
+    self%node = node
+    self%places = .true.
+    self%coordinate = coordinate
+    self%prescribes = .false.
+    self%prescribes(axis) = .true.
+  end subroutine new_placement
+
   !> Add the displacement since the start of the phase to nodal vectors.
   pure subroutine motion_displacement(self, x0, x_start, fraction, displacement)
     type(motion_t), intent(in) :: self
@@ -74,7 +91,9 @@ contains
 
     do i = 1, size(self%node)
       associate (node => self%node(i))
-        if (self%bends) then
+        if (self%places) then
+          change = fraction*(self%coordinate - x_start(:, node))
+        else if (self%bends) then
           change = bent(self, x0(:, node), self%start + fraction*self%angle) &
               - bent(self, x0(:, node), self%start)
         else

@@ -6,7 +6,7 @@ module dd3_setup_displacements
   use dd3_base_text, only : axis_name
   use dd3_input_case, only : case_t
   use dd3_mesh_mesh, only : mark_directions, mesh_t
-  use dd3_model_motions, only : motion_t, new_motion
+  use dd3_model_motions, only : motion_t, new_motion, new_placement
   use dd3_model_phase, only : phase_t
   implicit none
   private
@@ -30,7 +30,7 @@ contains
     type(motion_t), allocatable :: motion(:)
     logical :: displaced(3, mesh%n_node)
     integer, allocatable :: node(:)
-    integer :: k
+    integer :: k, n
 
     displaced = .false.
     associate (spec => case%phase(i))
@@ -39,12 +39,20 @@ contains
       end do
       led = led .and. (fixed .or. .not. displaced)
       displaced = .false.
+      n = size(spec%motion)
+      allocate (motion(n + count(spec%displace%is_coordinate)))
       do k = 1, size(spec%displace)
-        node = mesh%nodes_of(spec%displace(k)%set)
-        displaced(spec%displace(k)%axis, node) = .true.
-        phase%displacement(spec%displace(k)%axis, node) = spec%displace(k)%value
+        associate (axis => spec%displace(k)%axis, value => spec%displace(k)%value)
+          node = mesh%nodes_of(spec%displace(k)%set)
+          displaced(axis, node) = .true.
+          if (spec%displace(k)%is_coordinate) then
+            n = n + 1
+            call new_placement(motion(n), node, axis, value)
+          else
+            phase%displacement(axis, node) = value
+          end if
+        end associate
       end do
-      allocate (motion(size(spec%motion)))
       do k = 1, size(spec%motion)
         node = mesh%nodes_of(spec%motion(k)%set)
         call new_motion(motion(k), node, mesh%x, spec%motion(k)%bends, spec%motion(k)%value, &

@@ -21,6 +21,7 @@ COMMANDS = {
     "unfold": ("dd3.unfold", "estimate the flat blank of a part in one step"),
     "process": ("dd3.process", "run the operations of a part one after another"),
     "compensate": ("dd3.compensate", "correct the tools of a process for springback"),
+    "deviation": ("dd3.deviation", "compare a part with its nominal shape, free or in its checking fixture"),
     "outline": ("dd3.outline", "find the outline of the blank that gives a wanted rim"),
     "report": ("dd3.report", "make a page about a forming run"),
     "view": ("dd3.view", "open the page of a run in the browser, or the sheet in a window"),

@@ -24,19 +24,18 @@ Petzoldt and Weiher, J. Mater. Process. Technol. 169 (2005) 115-125 (smooth disp
 import shutil
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator, RBFInterpolator
+from scipy.interpolate import RBFInterpolator
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from dd3.bound import Bound, rings
 from dd3.errors import LOG, Problem, Stopped
 from dd3.gmsh_session import session
+from dd3.nominal import at_places, normal_feet, sheet_surface
 from dd3.process import (
     Operation,
     Process,
@@ -53,9 +52,6 @@ from dd3.run import read_frame, read_job
 from dd3.sheet import AXES, Sheet
 from dd3.springback import best_fit, images, steps_with_tools
 from dd3.tools.cad import silence
-from dd3.tools.facet_files import Facets
-from dd3.tools.nagata import estimate_normals, unfolded_patches
-from dd3.tools.picture import quads as flat_quads
 from dd3.tools.surface import Patches, Surface, from_nodes, points_on, read_patches, write
 
 MOST_POINTS = 2000  # of the smooth function
@@ -120,54 +116,9 @@ def tool_places(folder: Path, job: dict[str, Any], sheet: Sheet, step: int) -> d
 
 
 def drawn_surface(process: Process, beyond: float = 0.0) -> Any:
-    """Return the lower face of the whole sheet under the tools as a surface of pyvista, curved between the nodes, and
-    continued beyond its border by a length."""
-    import pyvista as pv
+    """Return the lower face of the whole sheet under the tools as a surface, see `sheet_surface`."""
     sheet = Sheet(process.operations[0].folder)
-    step = drawn_step(sheet, read_job(sheet.path.parent))
-    nodes, corner = np.unique(sheet.faces(False, step), return_inverse=True)
-    points, quads = sheet.points(step)[nodes], corner.reshape(-1, 4)
-    place = {int(node): i for i, node in enumerate(nodes)}
-    bound = {(place[a], place[b]): place[node] for (a, b), node in sheet.bound(step).items() if node in place}
-    if beyond:
-        points, quads = continued(points, quads, beyond, bound)
-    facets = conforming(quads, bound)
-    mesh = Facets(points, facets, np.zeros(len(facets), int), ["sheet"])
-    net, _ = unfolded_patches(mesh.nodes, estimate_normals(mesh))
-    return pv.PolyData(*flat_quads(net)).triangulate()
-
-
-def conforming(quads: np.ndarray, bound: Bound) -> np.ndarray:
-    """Return the facets (m, 4) of quadrilaterals; one with bound nodes becomes triangles around one of these, with -1
-    as the fourth node."""
-    facets: list[list[int]] = []
-    for ring, quad in zip(rings(quads, bound), quads.tolist()):
-        if len(ring) == 4:
-            facets.append(quad)
-            continue
-        k = next(i for i, node in enumerate(ring) if node not in quad)
-        middle, *others = ring[k:] + ring[:k]
-        facets += [[middle, a, b, -1] for a, b in pairwise(others)]
-    return np.array(facets)
-
-
-def continued(points: np.ndarray, quads: np.ndarray, length: float, bound: Bound) -> tuple[np.ndarray, np.ndarray]:
-    """Return a mesh of quadrilaterals with a row more around its border, in the direction of the last row."""
-    edges = np.stack((quads, np.roll(quads, -1, axis=1)), axis=2).reshape(-1, 2)
-    opposite = np.stack((np.roll(quads, 1, axis=1), np.roll(quads, -2, axis=1)), axis=2).reshape(-1, 2)
-    known = {edge for ring in rings(quads, bound) for edge in zip(ring, ring[1:] + ring[:1])}
-    known |= {edge for a, b in bound for edge in ((a, b), (b, a))}
-    free = np.array([(int(b), int(a)) not in known for a, b in edges])
-    outward = np.zeros_like(points)
-    for k in range(2):
-        np.add.at(outward, edges[free][:, k], points[edges[free][:, k]] - points[opposite[free][:, k]])
-    border = np.unique(edges[free])
-    number = np.full(len(points), -1)
-    number[border] = len(points) + np.arange(len(border))
-    outward = outward[border] / np.linalg.norm(outward[border], axis=1)[:, None]
-    a, b = edges[free].T
-    return (np.vstack((points, points[border] + length * outward)),
-            np.vstack((quads, np.stack((b, a, number[a], number[b]), axis=1))))
+    return sheet_surface(sheet, drawn_step(sheet, read_job(sheet.path.parent)), beyond)
 
 
 def aligned(free: np.ndarray, drawn: np.ndarray, wanted: Any, mirror: Sequence[str], border: float
@@ -189,24 +140,6 @@ def aligned(free: np.ndarray, drawn: np.ndarray, wanted: Any, mirror: Sequence[s
         place = best_fit(place, goal, mirror)
         goal, beyond = normal_feet(place, wanted)
     return place, goal, beyond <= border
-
-
-def normal_feet(points: np.ndarray, surface: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Return points moved along the normals of a surface by their distances along these, and the distances by which
-    they are beside it: where the sheet reaches beyond the border of the surface, the feet are in its continuation."""
-    cells, closest = surface.find_closest_cell(points, return_closest_point=True)
-    normals = np.asarray(surface.face_normals)[cells]
-    along = ((closest - points) * normals).sum(axis=1)[:, None] * normals
-    return np.asarray(points + along), np.linalg.norm(closest - points - along, axis=1)
-
-
-def at_places(places: np.ndarray, values: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Return values at nodes of the blank interpolated in plan at other places of it."""
-    found = LinearNDInterpolator(places[:, :2], values)(wanted[:, :2])
-    outside = ~np.isfinite(found).all(axis=1)
-    if outside.any():  # round-off at the border
-        found[outside] = NearestNDInterpolator(places[:, :2], values)(wanted[outside, :2])
-    return np.asarray(found)
 
 
 def nodes_of(patch: tuple[np.ndarray, np.ndarray], in_v: int, in_u: int) -> np.ndarray:

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dd3.alignment import kabsch
 from dd3.section import in_plane
 from dd3.sheet import AXES, Line, Sheet, length
 
@@ -42,17 +43,10 @@ def best_fit(points: np.ndarray, target: np.ndarray, mirror: Sequence[str] = (),
 
     weights: those of the squares, such as the areas of nodes, without which the fit depends on the mesh; equal by
     default.
-    Source: Kabsch, Acta Cryst. A 32 (1976) 922-923.
     """
     whole, goal = np.concatenate(images(points, mirror)), np.concatenate(images(target, mirror))
     part = np.ones(len(points)) if weights is None else weights
-    part = np.tile(part / part.sum(), len(whole) // len(points))
-    part /= part.sum()
-    centre, middle = part @ whole, part @ goal
-    left, _, right = np.linalg.svd((part[:, None] * (whole - centre)).T @ (goal - middle))
-    turn = np.diag([1.0, 1.0, np.linalg.det(left @ right)])
-    moved: np.ndarray = (points - centre) @ left @ turn @ right + middle
-    return moved
+    return kabsch(whole, goal, np.tile(part, len(whole) // len(points))).of(points)
 
 
 def steps_with_tools(sheet: Sheet, phases: Sequence[dict]) -> np.ndarray:

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`dd3 deviation` on parts that were moved rigidly and bent by known functions; the input file of a fixture."""
+
+import numpy as np
+import pandas as pd
+import pytest
+from helpers import call, write_run
+
+HISTORY = "increment,phase,travel,progress,punch_ux,punch_uy,punch_uz\n0,draw,0,1,0,0,0\n1,free,2,1,0,0,0\n"
+TOOL = {"name": "punch", "active": True}
+PHASES = [{"number": 1, "name": "draw", "control": "punch", "tools": [TOOL]},
+          {"number": 2, "name": "free", "control": None, "tools": [{**TOOL, "active": False}]}]
+SHAPE = 41, 11, 2
+TURN = np.array([[0.36, 0.48, -0.8], [-0.8, 0.60, 0.0], [0.48, 0.64, 0.6]])
+LOCATORS = """
+[alignment]
+by = "locators"
+[[locator]]
+name = "a1"
+at = [5, 2, 0]
+direction = [0, 0, 1]
+[[locator]]
+name = "a2"
+at = [35, 2, 0]
+direction = [0, 0, 1]
+[[locator]]
+name = "a3"
+at = [20, 8, 0]
+direction = [0, 0, 1]
+[[locator]]
+name = "b1"
+at = [10, 5, 0]
+direction = [0, 1, 0]
+pin = true
+[[locator]]
+name = "b2"
+at = [30, 5, 0]
+direction = [0, 1, 0]
+pin = true
+[[locator]]
+name = "c1"
+at = [10, 5, 0]
+direction = [1, 0, 0]
+pin = true
+"""
+
+
+def plate(height=lambda x, y: 0 * x):
+    """Return the nodes of a plate of 40 x 10 x 1 mm whose lower face has a height, and its elements."""
+    x, y, z = (a.ravel() for a in np.meshgrid(np.linspace(0, 40, SHAPE[0]), np.linspace(0, 10, SHAPE[1]), [0.0, 1.0],
+                                              indexing="ij"))
+    number = np.arange(len(x)).reshape(SHAPE)
+    cells = [[number[i + a, j + b, k] for k in (0, 1) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))]
+             for i in range(SHAPE[0] - 1) for j in range(SHAPE[1] - 1)]
+    return np.column_stack([x, y, z + height(x, y)]), cells
+
+
+def measured(folder, drawn, free, text, *options, expect=0):
+    """Compare a free shape with the drawn one; return what is said, and the tables by name."""
+    flat, cells = plate()
+    history = HISTORY
+    write_run(folder / "run", drawn, free, cells, history, "phase\n", {"displacement": (drawn - flat, free - flat)},
+              phases=PHASES)
+    (folder / "f.toml").write_text('face = "lower"\n' + text)
+    said = call("deviation", folder / "run", "--fixture", folder / "f.toml", *options, expect=expect)
+    found = {path.stem: pd.read_csv(path) for path in (folder / "run" / "deviation").glob("*.csv")}
+    return said, found
+
+
+def crown(x, y):
+    """Return a height with curvature in both directions."""
+    return 0.02 * (x - 20)**2 + 0.03 * (y - 5)**2
+
+
+@pytest.mark.parametrize("alignment", ["", LOCATORS])
+def test_rigid_motion(tmp_path, alignment):
+    """A part that was moved and turned rigidly has no deviation."""
+    drawn, _ = plate(crown if not alignment else lambda x, y: 0 * x)
+    said, found = measured(tmp_path, drawn, drawn @ TURN.T + [30, -20, 70], "tolerance = 0.01\n" + alignment,
+                           "--verdict")
+    assert np.abs(found["map"]["deviation"]).max() < 1e-5
+    assert "6 rigid motions determined" in said and "part: good" in said
+
+
+def test_locators_on_a_bent_plate(tmp_path):
+    """A flat plate that is bent to z = c x (x - 40) and lies on three locators differs by the parabola less the plane
+    through its values at the locators, up to its slope squared."""
+    c = 1e-4
+    drawn, _ = plate()
+    free, _ = plate(lambda x, y: c * x * (x - 40))
+    said, found = measured(tmp_path, drawn, free @ TURN.T + [1, 2, 3], LOCATORS + """
+[[point]]
+name = "middle"
+at = [20, 2, 0]
+tolerance = 0.01
+[[point]]
+name = "corner"
+at = [0, 0, 0]
+tolerance = 0.01
+""".replace("tolerance", "tolerance"), "--verdict", expect=1)
+    z = np.array([c * x * (x - 40) for x in (5, 35, 20)])
+    plane = np.linalg.solve(np.array([[1, 5, 2], [1, 35, 2], [1, 20, 8]]), z)
+    # Positive on the side of the lower face: downwards.
+    expected = [-(c * x * (x - 40) - plane @ [1, x, y]) for x, y in ((20, 2), (0, 0))]
+    assert np.allclose(found["points"]["deviation"], expected, atol=2e-5)
+    assert np.abs(found["supports"]["gap"]).max() < 1e-9
+    assert "not good: point middle, point corner" in said
+
+
+def test_best_fit_and_section(tmp_path):
+    """The best fit of a parabola leaves c (X^2 - mean of X^2) of a plate, X from its middle; a section shows it."""
+    c = 1e-4
+    drawn, _ = plate()
+    free, _ = plate(lambda x, y: c * (x - 20)**2)
+    _, found = measured(tmp_path, drawn, free + [0, 0, 5], 'section = ["y=4.5"]\ntolerance = [-1, 1]\n')
+    table = found["sections"]
+    expected = -c * ((table["x"] - 20)**2 - 20**2 / 3)
+    assert np.allclose(table["deviation"], expected, atol=5e-5)
+    assert (tmp_path / "run" / "deviation" / "map.png").is_file()
+
+
+def test_points_as_alignment(tmp_path):
+    """Aligned at three points of a shifted and bent plate the deviation there is zero."""
+    names = "".join(f'[[point]]\nname = "p{i}"\nat = [{x}, {y}, 0]\n'
+                    for i, (x, y) in enumerate(((2, 2), (38, 2), (20, 9))))
+    drawn, _ = plate()
+    free, _ = plate(lambda x, y: 1e-3 * x * y)
+    said, found = measured(tmp_path, drawn, free + [0, 0, 0.5], '[alignment]\nby = "points"\n' + names)
+    assert np.abs(found["points"]["deviation"]).max() < 1e-8
+    assert "3 rigid motions determined" in said
+
+
+@pytest.mark.parametrize("text, message", [
+    ("colour = 1\n", "unknown key 'colour'"),
+    ('[alignment]\nby = "eye"\n', "expected one of: fit points locators none"),
+    ("tolerance = [1, -1]\n", "expected a number > 0"),
+    (LOCATORS.replace("[20, 8, 0]", "[20, 2, 0]"), "determine 5 of 6"),
+    (LOCATORS.replace("[5, 2, 0]", "[5, 20, 0]"), "does not meet the line of 'a1'"),
+])
+def test_refused(tmp_path, text, message):
+    """What a file cannot mean is refused with the reason."""
+    drawn, _ = plate()
+    said, _ = measured(tmp_path, drawn, drawn, text, expect=2)
+    assert message in said

@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfaces with which a sheet is compared: a face of a sheet, a tool surface, CAD, facets; distances from them."""
+
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator
+from scipy.spatial import cKDTree
+
+from dd3.bound import Bound, rings
+from dd3.errors import Problem
+from dd3.fields import SAME
+from dd3.plot.sheet import Placement, tool_surface
+from dd3.sheet import Sheet
+from dd3.tools.facet_files import Facets
+from dd3.tools.nagata import estimate_normals, unfolded_patches
+from dd3.tools.one_tool import made
+from dd3.tools.picture import quads as flat_quads
+from dd3.tools.settings import ToolSettings
+from dd3.tools.surface import read_patches
+
+PARALLEL = 1e-9  # sine of the angle between a line and a triangle below which they do not meet
+INSIDE = 1e-9  # by which a line may pass beside a triangle, in its own coordinates
+
+
+def surface_of(net: np.ndarray) -> Any:
+    """Return patches as a surface of pyvista, of triangles between points on them."""
+    import pyvista as pv
+    return pv.PolyData(*flat_quads(net)).triangulate()
+
+
+def read_surface(path: Path) -> Any:
+    """Return the surface of a file: tool surface (.bez), CAD, or facets, as `dd3 tool` reads it."""
+    if not path.is_file():
+        raise Problem(f"{path}: No such file")
+    if path.suffix == ".bez":
+        return tool_surface(read_patches(path), Placement(np.eye(3), np.zeros(3))).triangulate()
+    return surface_of(made(ToolSettings(path))[0].net)
+
+
+def sheet_surface(sheet: Sheet, step: int, beyond: float = 0.0, upper: bool = False) -> Any:
+    """Return a face of a sheet at a step as a surface of pyvista, curved between the nodes, its normals away from the
+    sheet, and continued beyond its border by a length."""
+    nodes, corner = np.unique(sheet.faces(upper, step), return_inverse=True)
+    points, quads = sheet.points(step)[nodes], corner.reshape(-1, 4)
+    place = {int(node): i for i, node in enumerate(nodes)}
+    bound = {(place[a], place[b]): place[node] for (a, b), node in sheet.bound(step).items() if node in place}
+    if beyond:
+        points, quads = continued(points, quads, beyond, bound)
+    facets = conforming(quads, bound)
+    mesh = Facets(points, facets, np.zeros(len(facets), int), ["sheet"])
+    return surface_of(unfolded_patches(mesh.nodes, estimate_normals(mesh))[0])
+
+
+def conforming(quads: np.ndarray, bound: Bound) -> np.ndarray:
+    """Return the facets (m, 4) of quadrilaterals; one with bound nodes becomes triangles around one of these, with -1
+    as the fourth node."""
+    facets: list[list[int]] = []
+    for ring, quad in zip(rings(quads, bound), quads.tolist()):
+        if len(ring) == 4:
+            facets.append(quad)
+            continue
+        k = next(i for i, node in enumerate(ring) if node not in quad)
+        middle, *others = ring[k:] + ring[:k]
+        facets += [[middle, a, b, -1] for a, b in pairwise(others)]
+    return np.array(facets)
+
+
+def continued(points: np.ndarray, quads: np.ndarray, length: float, bound: Bound) -> tuple[np.ndarray, np.ndarray]:
+    """Return a mesh of quadrilaterals with a row more around its border, in the direction of the last row."""
+    edges = np.stack((quads, np.roll(quads, -1, axis=1)), axis=2).reshape(-1, 2)
+    opposite = np.stack((np.roll(quads, 1, axis=1), np.roll(quads, -2, axis=1)), axis=2).reshape(-1, 2)
+    known = {edge for ring in rings(quads, bound) for edge in zip(ring, ring[1:] + ring[:1])}
+    known |= {edge for a, b in bound for edge in ((a, b), (b, a))}
+    free = np.array([(int(b), int(a)) not in known for a, b in edges])
+    outward = np.zeros_like(points)
+    for k in range(2):
+        np.add.at(outward, edges[free][:, k], points[edges[free][:, k]] - points[opposite[free][:, k]])
+    border = np.unique(edges[free])
+    number = np.full(len(points), -1)
+    number[border] = len(points) + np.arange(len(border))
+    outward = outward[border] / np.linalg.norm(outward[border], axis=1)[:, None]
+    a, b = edges[free].T
+    return (np.vstack((points, points[border] + length * outward)),
+            np.vstack((quads, np.stack((b, a, number[a], number[b]), axis=1))))
+
+
+def at_places(places: np.ndarray, values: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """Return values at nodes of the blank interpolated in plan at other places of it."""
+    found = LinearNDInterpolator(places[:, :2], values)(wanted[:, :2])
+    outside = ~np.isfinite(found).all(axis=1)
+    if outside.any():  # round-off at the border
+        found[outside] = NearestNDInterpolator(places[:, :2], values)(wanted[outside, :2])
+    return np.asarray(found)
+
+
+def of_material(initial: np.ndarray, values: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """Return values at nodes of the blank, at other initial places: those of the same nodes, or interpolated."""
+    distance, node = cKDTree(initial).query(wanted)
+    if distance.max() <= SAME * np.ptp(initial, axis=0).max():
+        return np.asarray(values[node])
+    return at_places(initial, values, wanted)
+
+
+def normal_distances(points: np.ndarray, surface: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the distances of points from a surface along its normals, positive on their side, these normals, and the
+    distances by which the points are beside the surface, beyond its border."""
+    cells, closest = surface.find_closest_cell(points, return_closest_point=True)
+    normals = np.asarray(surface.face_normals, float)[cells]
+    distance = ((points - closest) * normals).sum(axis=1)
+    return distance, normals, np.linalg.norm(points - closest - distance[:, None] * normals, axis=1)
+
+
+def normal_feet(points: np.ndarray, surface: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Return points moved along the normals of a surface by their distances along these, and the distances by which
+    they are beside it: where the sheet reaches beyond the border of the surface, the feet are in its continuation."""
+    distance, normals, beside = normal_distances(points, surface)
+    return points - distance[:, None] * normals, beside
+
+
+def line_distances(points: np.ndarray, directions: np.ndarray, surface: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Return the distances along lines from points to the nearest place where each meets a surface, and its normals
+    there; nan where it does not. directions: unit vectors.
+
+    Source: Moeller and Trumbore, J. Graph. Tools 2 (1997) 21-28.
+    """
+    corner = np.asarray(surface.points, float)[surface.faces.reshape(-1, 4)[:, 1:]]
+    first, second = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
+    size = np.linalg.norm(first, axis=1) * np.linalg.norm(second, axis=1)
+    found, normals = np.full(len(points), np.nan), np.full((len(points), 3), np.nan)
+    for i, (point, direction) in enumerate(zip(points, directions)):
+        across = np.cross(direction, second)
+        volume = (first * across).sum(axis=1)
+        factor = np.divide(1.0, volume, where=np.abs(volume) > PARALLEL * size, out=np.full_like(volume, np.nan))
+        offset = point - corner[:, 0]
+        u = factor * (offset * across).sum(axis=1)
+        other = np.cross(offset, first)
+        v = factor * (other @ direction)
+        hits = np.flatnonzero((u >= -INSIDE) & (v >= -INSIDE) & (u + v <= 1 + INSIDE))
+        if hits.size:
+            along = factor[hits] * (other[hits] * second[hits]).sum(axis=1)
+            nearest = np.abs(along).argmin()
+            found[i] = along[nearest]
+            normals[i] = surface.face_normals[hits[nearest]]
+    return found, normals
+
+
+def turned_to(surface: Any, other: Any) -> Any:
+    """Return a surface with its normals on the side of those of another one beside it."""
+    _, normals, _ = normal_distances(np.asarray(other.cell_centers().points, float), surface)
+    same = (normals * np.asarray(other.face_normals)).sum(axis=1)
+    return surface.flip_faces() if (same < 0).sum() > (same > 0).sum() else surface
