@@ -163,8 +163,12 @@ module dd3_input_case
     type(law_spec_t) :: yield, hardening
     !> Law of the modulus; without a name for a constant one.
     type(law_spec_t) :: modulus
-    !> Law of the strain rate; without a name for none.
-    type(law_spec_t) :: rate
+    !> Laws of the strain rate and of the temperature; without a name for none.
+    type(law_spec_t) :: rate, temperature
+    !> Temperature of the undeformed material.
+    real(wp) :: initial_temperature = 20.0_wp
+    !> Heat capacity, mJ/(t K), 0 without heating, and the part of plastic work that heats.
+    real(wp) :: heat_capacity = 0.0_wp, heat_fraction = 0.9_wp
     !> t/mm3; 0 if not given.
     real(wp) :: density = 0.0_wp
     !> Size 0 without a back-stress.

@@ -41,6 +41,14 @@ contains
     if (block%has("rate")) then
       call fill_law(material%rate, block%entry(block%find("rate")), block%folder)
     end if
+    material%temperature%name = ""
+    if (block%has("temperature")) then
+      call fill_law(material%temperature, block%entry(block%find("temperature")), block%folder)
+    end if
+    if (block%has("initial_temperature")) material%initial_temperature = &
+        block%number("initial_temperature")
+    if (block%has("heat_capacity")) material%heat_capacity = block%number("heat_capacity")
+    if (block%has("heat_fraction")) material%heat_fraction = block%number("heat_fraction")
     allocate (material%backstress(0))
     do i = 1, block%n_entry
       if (block%entry(i)%key /= "backstress" .or. .not. block%entry(i)%valid) cycle

@@ -145,8 +145,17 @@ contains
       row("rate", kind_law, "", "none", &
           "law of the strain rate and its parameters: a factor on the flow stress; none: "// &
           "independent of the rate"), &
-      row("density", kind_real, "t/mm3", "-", "density, for gravity; 7.85e-9 for steel", &
-          lower=zero, lower_open=.true.), &
+      row("temperature", kind_law, "", "none", &
+          "law of the temperature and its parameters: a factor on the flow stress; none: "// &
+          "independent of the temperature"), &
+      row("initial_temperature", kind_real, "C", "20", "temperature of the undeformed material"), &
+      row("heat_capacity", kind_real, "mJ/(t K)", "-", "heat capacity: plastic work heats each "// &
+          "point, with the density; 4.6e8 for steel, 9e8 for aluminium; left out: no heating", &
+          lower=1.0e7_wp, upper=1.0e10_wp), &
+      row("heat_fraction", kind_real, "", "0.9", "part of the plastic work that heats", &
+          lower=zero, upper=1.0_wp, lower_open=.true.), &
+      row("density", kind_real, "t/mm3", "-", &
+          "density, for gravity and heating; 7.85e-9 for steel", lower=zero, lower_open=.true.), &
       row("rolling_direction", kind_reals, "", "1 0 0", "rolling direction in the initial sheet", &
           count=3), &
       row("normal_direction", kind_reals, "", "-", "normal of the initial sheet; default: that "// &

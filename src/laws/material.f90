@@ -8,7 +8,8 @@ module dd3_laws_material
   use dd3_input_case, only : material_spec_t
   use dd3_laws_choice, only : choose_checked
   use dd3_material_check, only : law_backstress, law_hardening, law_modulus, law_rate, &
-      law_yield
+      law_temperature, law_yield
+  use dd3_material_composition, only : heat_t
   use dd3_material_description, only : law_choice_t
   use dd3_material_material, only : material_t, new_material
   implicit none
@@ -26,7 +27,7 @@ contains
     !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
 
-    type(law_choice_t) :: yield, hardening, modulus, rate
+    type(law_choice_t) :: yield, hardening, modulus, rate, temperature
     type(law_choice_t), allocatable :: backstress(:)
     type(digest_t) :: digest
     integer :: found, i
@@ -42,11 +43,14 @@ contains
     end do
     if (spec%source%has("modulus")) call choose_checked(law_modulus, spec%modulus, modulus, errors)
     if (spec%source%has("rate")) call choose_checked(law_rate, spec%rate, rate, errors)
+    if (spec%source%has("temperature")) call choose_checked(law_temperature, spec%temperature, &
+        temperature, errors)
     if (errors%count > found .or. .not. spec%source%valid) return
     if (yield%name == "" .or. hardening%name == "") return
     call new_material(material, spec%young, spec%poisson, yield, hardening, backstress, &
-        modulus, rate)
+        modulus, rate, temperature, heating(spec))
     call check_modulus(material, spec, errors)
+    call check_heating(material, spec, errors)
     if (errors%count > found) return
     call digest%add([spec%young, spec%poisson])
     call add_law(digest, yield)
@@ -56,8 +60,49 @@ contains
     end do
     if (material%laws%softens) call add_law(digest, modulus)
     if (material%laws%viscous) call add_law(digest, rate)
+    if (material%laws%scaled .or. material%laws%at_temperature > 0) then
+      if (allocated(material%laws%temperature%law)) call add_law(digest, temperature)
+      call digest%add([material%laws%heat%initial, material%laws%heat%per_work])
+    end if
     check_sum = digest%value()
   end subroutine make_material
+
+  !> Return the temperature and the heating of a material.
+  pure type(heat_t) function heating(spec)
+    type(material_spec_t), intent(in) :: spec
+
+    heating%initial = spec%initial_temperature
+    if (spec%heat_capacity > 0.0_wp .and. spec%density > 0.0_wp) heating%per_work = &
+        spec%heat_fraction/(spec%density*spec%heat_capacity)
+  end function heating
+
+  !> Require a density for heating, keys of the heating with an effect, and a temperature at which
+  !> the flow stress is not lost.
+  subroutine check_heating(material, spec, errors)
+    type(material_t), intent(in) :: material
+    type(material_spec_t), intent(in) :: spec
+    !> Errors found are added.
+    type(error_list_t), intent(inout) :: errors
+
+    !> Factor on the flow stress that is as good as none.
+    real(wp), parameter :: least = 0.01_wp
+    real(wp) :: factor, slope
+
+    if (spec%heat_capacity > 0.0_wp .and. .not. spec%density > 0.0_wp) then
+      call errors%push_input(spec%source%at("heat_capacity"), "heating needs the density", &
+          "density = t/mm3; 7.85e-9 for steel", code="E165")
+    end if
+    if (.not. spec%heat_capacity > 0.0_wp .and. spec%source%given("heat_fraction")) then
+      call errors%push_input(spec%source%at("heat_fraction"), "heat_fraction has no effect "// &
+          "without heat_capacity", "heat_capacity = mJ/(t K)", code="E165")
+    end if
+    if (.not. allocated(material%laws%temperature%law)) return
+    call material%laws%temperature%law%factor(spec%initial_temperature, factor, slope)
+    if (factor > least) return
+    call errors%push_input(spec%temperature%at, "at the initial temperature of "// &
+        to_text(spec%initial_temperature)//" no flow stress is left", &
+        "an initial temperature below the melting point", code="E149")
+  end subroutine check_heating
 
   !> Require that a law of the modulus begins at `young` and does not end above it.
   subroutine check_modulus(material, spec, errors)

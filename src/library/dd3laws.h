@@ -12,7 +12,7 @@
  *   stress         Cauchy stress, MPa, or the unit of Young's modulus and the flow stress
  *   tangent        consistent tangent d stress_i/d strain_j = tangent[i + 6*j]; not symmetric with back-stresses
  *   state          internal variables, initially zero: equivalent plastic strain first; the 6 of a tensor are 11 22 33
- *                  sqrt(2) 23, sqrt(2) 13, sqrt(2) 12
+ *                  sqrt(2) 23, sqrt(2) 13, sqrt(2) 12; temperature is its rise above the initial one
  *   elasticity     isotropic, hypoelastic: stress rate and elastic strain rate in the rotating axes
  *
  * Errors are returned with their text in message, cut to length bytes with the null character; message may be NULL.
@@ -70,6 +70,14 @@ int dd3laws_update(const dd3laws_material *material, const double strain[6], dou
  */
 int dd3laws_update_in_sheet(const dd3laws_material *material, const double strain[6], double stress[6], double *state,
                             double tangent[36], char *message, size_t length);
+
+/* The two over a time, s, which a law of the strain rate needs. Without a time, by the functions above or by 0, the
+ * rate is that of the state: 0 at the start, so that the flow stress is that at rest.
+ */
+int dd3laws_update_timed(const dd3laws_material *material, const double strain[6], double time, double stress[6],
+                         double *state, double tangent[36], char *message, size_t length);
+int dd3laws_update_in_sheet_timed(const dd3laws_material *material, const double strain[6], double time,
+                                  double stress[6], double *state, double tangent[36], char *message, size_t length);
 
 /* Return equivalent stress and flow stress of a state; they are equal in plastic flow. */
 double dd3laws_equivalent_stress(const dd3laws_material *material, const double stress[6], const double *state);

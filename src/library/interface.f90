@@ -18,7 +18,8 @@ module dd3_library_interface
   private
   public :: laws_version, material_new, material_read, material_free, material_state_size, &
       material_state_name, material_axes, material_update, material_update_in_sheet, &
-      material_equivalent_stress, material_flow_stress
+      material_update_timed, material_update_in_sheet_timed, material_equivalent_stress, &
+      material_flow_stress
 
   !> File name of a text in messages.
   character(len=*), parameter :: text_name = "text"
@@ -136,9 +137,27 @@ contains
     type(law_material_t), pointer :: self
 
     call c_f_pointer(handle, self)
-    material_update = updated(self, identity, strain, stress, state(:self%laws%n_internal), &
-        tangent, message, length)
+    material_update = updated(self, identity, strain, 0.0_wp, stress, &
+        state(:self%laws%n_internal), tangent, message, length)
   end function material_update
+
+  !> The same over a time, s; 0 for none.
+  integer(c_int) function material_update_timed(handle, strain, time, stress, state, tangent, &
+      message, length) bind(c, name="dd3laws_update_timed")
+    type(c_ptr), value :: handle
+    real(c_double), intent(in) :: strain(6)
+    real(c_double), value :: time
+    real(c_double), intent(inout) :: stress(6), state(*)
+    real(c_double), intent(out) :: tangent(6, 6)
+    type(c_ptr), value :: message
+    integer(c_size_t), value :: length
+
+    type(law_material_t), pointer :: self
+
+    call c_f_pointer(handle, self)
+    material_update_timed = updated(self, identity, strain, time, stress, &
+        state(:self%laws%n_internal), tangent, message, length)
+  end function material_update_timed
 
   !> The same with components in the axes in which rolling and normal direction are given.
   integer(c_int) function material_update_in_sheet(handle, strain, stress, state, tangent, &
@@ -153,16 +172,36 @@ contains
     type(law_material_t), pointer :: self
 
     call c_f_pointer(handle, self)
-    material_update_in_sheet = updated(self, self%axes, strain, stress, &
+    material_update_in_sheet = updated(self, self%axes, strain, 0.0_wp, stress, &
         state(:self%laws%n_internal), tangent, message, length)
   end function material_update_in_sheet
 
+  !> The same over a time, s; 0 for none.
+  integer(c_int) function material_update_in_sheet_timed(handle, strain, time, stress, state, &
+      tangent, message, length) bind(c, name="dd3laws_update_in_sheet_timed")
+    type(c_ptr), value :: handle
+    real(c_double), intent(in) :: strain(6)
+    real(c_double), value :: time
+    real(c_double), intent(inout) :: stress(6), state(*)
+    real(c_double), intent(out) :: tangent(6, 6)
+    type(c_ptr), value :: message
+    integer(c_size_t), value :: length
+
+    type(law_material_t), pointer :: self
+
+    call c_f_pointer(handle, self)
+    material_update_in_sheet_timed = updated(self, self%axes, strain, time, stress, &
+        state(:self%laws%n_internal), tangent, message, length)
+  end function material_update_in_sheet_timed
+
   !> Integrate over a strain increment; return the outcome.
-  integer(c_int) function updated(self, axes, strain, stress, state, tangent, message, length)
+  integer(c_int) function updated(self, axes, strain, time, stress, state, tangent, message, length)
     type(law_material_t), intent(in) :: self
     !> Axes of the material as columns, in those of strain and stress.
     real(wp), intent(in) :: axes(3, 3)
     real(wp), intent(in) :: strain(6)
+    !> s; 0 for none.
+    real(wp), intent(in) :: time
     real(wp), intent(inout) :: stress(6), state(:)
     real(wp), intent(out) :: tangent(6, 6)
     type(c_ptr), intent(in) :: message
@@ -180,7 +219,8 @@ contains
       start = matmul(start, rotation)
       increment = matmul(increment, rotation)
     end if
-    call self%laws%update(start, state, increment, kelvin, finished, derivative, plastic, verdict)
+    call self%laws%update(start, state, increment, kelvin, finished, derivative, plastic, verdict, &
+        time)
     tangent = voigt_tangent(matmul(rotation, matmul(derivative, transpose(rotation))))
     updated = int(verdict%outcome, c_int)
     if (verdict%outcome == verdict_converged) then

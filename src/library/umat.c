@@ -3,7 +3,7 @@
  *
  * The material is read from the file that the environment variable DD3_MATERIALS names, dd3_materials.dat by default.
  * Its name there is CMNAME in lower case without what CalculiX leaves of its own part: `@...@` and underscores before it.
- * PROPS is not used; NSTATV is at least the number of internal variables.
+ * Laws of the strain rate take DTIME, s. PROPS is not used; NSTATV is at least the number of internal variables.
  *
  * Stress and strain are components in axes that rotate with the material: in CalculiX always, in Abaqus with
  * *ORIENTATION. DROT is therefore not used. Rolling and normal direction of the material are in these axes as well.
@@ -92,7 +92,7 @@ void umat_(double *stress, double *statev, double *ddsdde, double *sse, double *
   int i, j;
 
   (void)sse, (void)spd, (void)scd, (void)rpl, (void)ddsddt, (void)drplde, (void)drpldt, (void)stran, (void)time;
-  (void)dtime, (void)temp, (void)dtemp, (void)predef, (void)dpred, (void)props, (void)nprops, (void)coords, (void)drot;
+  (void)temp, (void)dtemp, (void)predef, (void)dpred, (void)props, (void)nprops, (void)coords, (void)drot;
   (void)celent, (void)dfgrd0, (void)dfgrd1, (void)noel, (void)npt, (void)layer, (void)kspt, (void)kstep, (void)kinc;
   (void)cmname_length;
   check_sizes(material, *ndi, *nshr, *nstatv);
@@ -100,7 +100,8 @@ void umat_(double *stress, double *statev, double *ddsdde, double *sse, double *
     all_stress[i] = stress[i];
     all_strain[i] = dstran[i];
   }
-  if (dd3laws_update_in_sheet(material, all_strain, all_stress, statev, tangent, NULL, 0) != DD3LAWS_CONVERGED)
+  if (dd3laws_update_in_sheet_timed(material, all_strain, *dtime, all_stress, statev, tangent, NULL, 0) !=
+      DD3LAWS_CONVERGED)
     *pnewdt = 0.5;
   for (j = 0; j < n; j++) {
     stress[j] = all_stress[j];

@@ -12,17 +12,19 @@ module dd3_material_check
   use dd3_material_modulus_registry, only : describe_moduli, find_modulus
   use dd3_material_rate_law, only : rate_slot_t
   use dd3_material_rate_registry, only : describe_rates, find_rate
+  use dd3_material_temperature_law, only : temperature_slot_t
+  use dd3_material_temperature_registry, only : describe_temperatures, find_temperature
   use dd3_material_yield_criterion, only : yield_slot_t
   use dd3_material_yield_convexity, only : check_convexity
   use dd3_material_yield_registry, only : describe_criteria, find_criterion
   implicit none
   private
-  public :: law_yield, law_hardening, law_backstress, law_modulus, law_rate
+  public :: law_yield, law_hardening, law_backstress, law_modulus, law_rate, law_temperature
   public :: describe_laws, known_laws, law_rows, check_together
 
   !> The kinds of laws.
   integer, parameter :: law_yield = 1, law_hardening = 2, law_backstress = 3, &
-      law_modulus = 4, law_rate = 5
+      law_modulus = 4, law_rate = 5, law_temperature = 6
 
 contains
 
@@ -41,8 +43,10 @@ contains
       call describe_backstresses(descriptions)
     case (law_modulus)
       call describe_moduli(descriptions)
-    case default
+    case (law_rate)
       call describe_rates(descriptions)
+    case default
+      call describe_temperatures(descriptions)
     end select
   end subroutine describe_laws
 
@@ -99,6 +103,7 @@ contains
     type(backstress_slot_t) :: backstress
     type(modulus_slot_t) :: modulus
     type(rate_slot_t) :: rate
+    type(temperature_slot_t) :: temperature
     integer :: before
 
     before = 0
@@ -121,9 +126,12 @@ contains
     case (law_modulus)
       call find_modulus(name, modulus)
       call modulus%law%check(values, problems)
-    case default
+    case (law_rate)
       call find_rate(name, rate)
       call rate%law%check(values, problems)
+    case default
+      call find_temperature(name, temperature)
+      call temperature%law%check(values, problems)
     end select
     problems = problems(before + 1:)
   end subroutine check_together

@@ -1,8 +1,9 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> The laws of a material: elasticity, a criterion, a hardening law, any number of back-stresses,
-!> which add up, and possibly laws of Young's modulus and of the strain rate. The internal variables
-!> of a point are the equivalent plastic strain, six components of each back-stress, those of the
-!> hardening law, then the rate of the plastic strain if the flow stress depends on it.
+!> which add up, and possibly laws of Young's modulus, of the strain rate and of the temperature.
+!> The internal variables of a point are the equivalent plastic strain, six components of each
+!> back-stress, those of the hardening law, then the rate of the plastic strain if the flow stress
+!> depends on it, and the rise of the temperature if plastic work heats the material.
 module dd3_material_composition
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
@@ -13,12 +14,20 @@ module dd3_material_composition
   use dd3_material_hardening_law, only : hardening_t
   use dd3_material_modulus_law, only : modulus_slot_t
   use dd3_material_rate_law, only : rate_slot_t
+  use dd3_material_temperature_law, only : temperature_slot_t
   use dd3_material_yield_criterion, only : yield_criterion_t
   implicit none
   private
-  public :: composition_t, complete, describe_internal_variables
-  public :: stiffness_ratio, back_stress_of, flow_stress_after, flow_response_of, apply_rate
+  public :: composition_t, heat_t, complete, describe_internal_variables
+  public :: stiffness_ratio, back_stress_of, flow_stress_after, flow_response_of, apply_factors
   public :: add_back_stresses, evolve_internal_variables
+
+  !> Temperature of the undeformed material, and adiabatic heating.
+  type :: heat_t
+    real(wp) :: initial = 20.0_wp
+    !> Rise of the temperature by plastic work per volume, K mm3/mJ; 0 for a constant temperature.
+    real(wp) :: per_work = 0.0_wp
+  end type heat_t
 
   !> The laws of a material.
   type :: composition_t
@@ -30,12 +39,16 @@ module dd3_material_composition
     type(modulus_slot_t) :: modulus
     !> Not allocated for a flow stress that does not depend on the rate.
     type(rate_slot_t) :: rate
+    !> Not allocated for a flow stress that does not depend on the temperature.
+    type(temperature_slot_t) :: temperature
+    type(heat_t) :: heat
     !> Number of internal variables of a point.
     integer :: n_internal = 1
     !> Indices of the hardening law's first and last own internal variable.
     integer :: first = 2, last = 1
-    !> Index of the rate of the plastic strain; 0 if there is none.
-    integer :: at_rate = 0
+    !> Indices of the rate of the plastic strain and of the rise of the temperature; 0 if there is
+    !> none.
+    integer :: at_rate = 0, at_temperature = 0
     !> Whether there is a back-stress of any kind.
     logical :: kinematic = .false.
     !> Whether neither back-stress nor flow stress depends on the direction of flow: the matrix of
@@ -43,8 +56,8 @@ module dd3_material_composition
     logical :: symmetric = .true.
     !> Whether Young's modulus falls with the plastic strain.
     logical :: softens = .false.
-    !> Whether the flow stress depends on the strain rate.
-    logical :: viscous = .false.
+    !> Whether the flow stress depends on the strain rate; on it or on the temperature.
+    logical :: viscous = .false., scaled = .false.
   end type composition_t
 
 contains
@@ -60,6 +73,11 @@ contains
     if (self%viscous) then
       self%n_internal = self%n_internal + 1
       self%at_rate = self%n_internal
+    end if
+    self%scaled = self%viscous .or. allocated(self%temperature%law)
+    if (self%heat%per_work > 0.0_wp) then
+      self%n_internal = self%n_internal + 1
+      self%at_temperature = self%n_internal
     end if
     self%kinematic = size(self%backstress) > 0 .or. self%hardening%owns_back_stress
     self%softens = allocated(self%modulus%law)
@@ -86,6 +104,8 @@ contains
     rows = [rows, own]
     if (self%viscous) rows = [rows, internal_variable_t("plastic_strain_rate", "1/s", &
         "rate of the equivalent plastic strain in the last increment", 1)]
+    if (self%at_temperature > 0) rows = [rows, internal_variable_t("temperature", "C", &
+        "temperature by adiabatic heating", 1, offset=self%heat%initial)]
     rows(1)%first = 1
     do i = 2, size(rows)
       rows(i)%first = rows(i - 1)%first + rows(i - 1)%n_component
@@ -182,23 +202,55 @@ contains
 
     call self%hardening%flow_stress(start(1), start(self%first:self%last), increment, direction, &
         flow)
-    if (self%viscous) call apply_rate(self, start, increment, frequency, flow)
+    if (self%scaled) call apply_factors(self, start, increment, frequency, flow)
   end subroutine flow_stress_after
 
-  !> Multiply the flow stress of the hardening law by the factor of the strain rate; arguments as
-  !> for `flow_stress_after`.
-  pure subroutine apply_rate(self, start, increment, frequency, flow)
+  !> Multiply the flow stress of the hardening law by the factors of the strain rate and of the
+  !> temperature; arguments as for `flow_stress_after`.
+  pure subroutine apply_factors(self, start, increment, frequency, flow)
     type(composition_t), intent(in) :: self
     real(wp), intent(in) :: start(self%n_internal), increment, frequency
     type(flow_response_t), intent(inout) :: flow
 
     real(wp) :: factor, slope
 
-    call self%rate%law%factor(rate_after(self, start, increment, frequency), factor, slope)
-    flow%slope = factor*flow%slope + flow%value*slope*frequency
-    flow%gradient = factor*flow%gradient
+    if (self%viscous) then
+      call self%rate%law%factor(rate_after(self, start, increment, frequency), factor, slope)
+      flow%slope = factor*flow%slope + flow%value*slope*frequency
+      flow%gradient = factor*flow%gradient
+      flow%value = factor*flow%value
+    end if
+    if (allocated(self%temperature%law)) call apply_temperature(self, start, increment, flow)
+  end subroutine apply_factors
+
+  !> Multiply a flow stress by the factor of the temperature at the end of a plastic increment: the
+  !> work that heats is that of the flow stress at the temperature of the start.
+  pure subroutine apply_temperature(self, start, increment, flow)
+    type(composition_t), intent(in) :: self
+    real(wp), intent(in) :: start(self%n_internal), increment
+    type(flow_response_t), intent(inout) :: flow
+
+    real(wp) :: before, factor, slope, temperature, heating, heating_slope
+
+    temperature = temperature_of(self, start)
+    call self%temperature%law%factor(temperature, before, slope)
+    heating = self%heat%per_work*before*flow%value*increment
+    heating_slope = self%heat%per_work*before*(flow%value + increment*flow%slope)
+    call self%temperature%law%factor(temperature + heating, factor, slope)
+    flow%slope = factor*flow%slope + flow%value*slope*heating_slope
+    flow%gradient = (factor + slope*heating)*flow%gradient
     flow%value = factor*flow%value
-  end subroutine apply_rate
+  end subroutine apply_temperature
+
+  !> Return the temperature of a state.
+  pure real(wp) function temperature_of(self, internal_variables)
+    type(composition_t), intent(in) :: self
+    real(wp), intent(in) :: internal_variables(self%n_internal)
+
+    temperature_of = self%heat%initial
+    if (self%at_temperature > 0) temperature_of = temperature_of &
+        + internal_variables(self%at_temperature)
+  end function temperature_of
 
   !> Return the rate of the plastic strain over an increment, 1/s; arguments as for
   !> `flow_stress_after`.
@@ -233,7 +285,8 @@ contains
   end subroutine add_back_stresses
 
   !> Evolve the internal variables over an increment.
-  pure subroutine evolve_internal_variables(self, start, increment, frequency, direction, evolved)
+  pure subroutine evolve_internal_variables(self, start, increment, frequency, stress, direction, &
+      evolved)
     type(composition_t), intent(in) :: self
     !> Internal variables at the start.
     real(wp), intent(in) :: start(self%n_internal)
@@ -241,6 +294,8 @@ contains
     real(wp), intent(in) :: increment
     !> As for `flow_stress_after`.
     real(wp), intent(in) :: frequency
+    !> Stress of the end, MPa.
+    real(wp), intent(in) :: stress(6)
     !> The criterion at the effective stress of the end; not used for an elastic increment.
     type(flow_direction_t), intent(in) :: direction
     !> Internal variables at the end.
@@ -253,6 +308,8 @@ contains
     if (self%viscous) evolved(self%at_rate) = rate_after(self, start, increment, frequency)
     if (.not. increment > 0.0_wp) return
     evolved(1) = start(1) + increment
+    if (self%at_temperature > 0) evolved(self%at_temperature) = start(self%at_temperature) &
+        + self%heat%per_work*increment*dot_product(stress, direction%gradient)
     do i = 1, size(self%backstress)
       call self%backstress(i)%law%back_stress(start(6*i - 4:6*i + 1), increment, direction, back)
       evolved(6*i - 4:6*i + 1) = back%value

@@ -40,6 +40,8 @@ module dd3_material_description
     integer :: n_component = 1
     !> Index of the first component among the point's internal variables; set for a whole material.
     integer :: first = 0
+    !> Value at a stored zero.
+    real(wp) :: offset = 0.0_wp
   end type internal_variable_t
 
   !> An error in the values of a law.

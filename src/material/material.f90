@@ -1,14 +1,14 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> A material: elasticity, yield criterion, hardening law, back-stresses and possibly laws of the
-!> modulus and of the strain rate, evaluated at a point.
+!> modulus, of the strain rate and of the temperature, evaluated at a point.
 !> All tensors are Kelvin vectors in the orthotropy axes.
 module dd3_material_material
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, &
       verdict_impossible, cause_large_strain, cause_none, cause_not_finite, cause_return_mapping
   use dd3_material_backstress_registry, only : find_backstress
-  use dd3_material_composition, only : composition_t, add_back_stresses, back_stress_of, complete, &
-      stiffness_ratio, flow_response_of, flow_stress_after, &
+  use dd3_material_composition, only : composition_t, heat_t, add_back_stresses, back_stress_of, &
+      complete, stiffness_ratio, flow_response_of, flow_stress_after, &
       describe_composition => describe_internal_variables
   use dd3_material_description, only : internal_variable_t, law_choice_t
   use dd3_material_elasticity, only : elastic_stress, new_elasticity, &
@@ -19,6 +19,7 @@ module dd3_material_material
   use dd3_material_modulus_registry, only : find_modulus
   use dd3_material_rate_registry, only : find_rate
   use dd3_material_return_mapping, only : step_t
+  use dd3_material_temperature_registry, only : find_temperature
   use dd3_material_update, only : substeps_t, integrate, differentiate, all_finite
   use dd3_material_yield_criterion, only : yield_slot_t
   use dd3_material_yield_registry, only : find_criterion
@@ -31,7 +32,7 @@ module dd3_material_material
     !> Young's modulus, MPa.
     real(wp) :: young = 0.0_wp
     !> Number of internal variables of a point: equivalent plastic strain first, then six for each
-    !> back-stress, then the hardening law's own and the rate. All are initially zero.
+    !> back-stress, then the hardening law's own, rate and temperature. All are initially zero.
     integer :: n_internal = 1
     !> Number of substeps of a strain increment before any failure.
     integer :: least_substeps = 1
@@ -55,7 +56,8 @@ module dd3_material_material
 contains
 
   !> Initialise a material with laws whose parameters have been checked.
-  subroutine new_material(self, young, poisson, criterion, hardening, backstress, modulus, rate)
+  subroutine new_material(self, young, poisson, criterion, hardening, backstress, modulus, rate, &
+      temperature, heat)
     type(material_t), intent(out) :: self
     !> Young's modulus, MPa; Poisson's ratio, above -1 and below 1/2.
     real(wp), intent(in) :: young, poisson
@@ -66,6 +68,9 @@ contains
     type(law_choice_t), intent(in), optional :: modulus
     !> Law of the strain rate, likewise.
     type(law_choice_t), intent(in), optional :: rate
+    !> Law of the temperature, likewise, and heating; none by default.
+    type(law_choice_t), intent(in), optional :: temperature
+    type(heat_t), intent(in), optional :: heat
 
     type(yield_slot_t) :: found_criterion
     type(hardening_slot_t) :: found_hardening
@@ -92,6 +97,12 @@ contains
       call find_rate(rate%name, self%laws%rate)
       if (allocated(self%laws%rate%law)) call self%laws%rate%law%set(rate%values)
     end if
+    if (present(temperature)) then
+      call find_temperature(temperature%name, self%laws%temperature)
+      if (allocated(self%laws%temperature%law)) call self%laws%temperature%law%set( &
+          temperature%values)
+    end if
+    if (present(heat)) self%laws%heat = heat
     call complete(self%laws)
     self%n_internal = self%laws%n_internal
   end subroutine new_material

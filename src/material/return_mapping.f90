@@ -15,7 +15,7 @@ module dd3_material_return_mapping
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : solve_small
   use dd3_material_composition, only : composition_t, back_stress_of, flow_response_of, &
-      flow_stress_after, add_back_stresses, apply_rate, stiffness_ratio
+      flow_stress_after, add_back_stresses, apply_factors, stiffness_ratio
   use dd3_material_elasticity, only : elastic_strain, elastic_stress
   use dd3_material_flow, only : flow_direction_t, flow_response_t, back_response_t
   implicit none
@@ -228,7 +228,7 @@ contains
     call laws%criterion%second_derivative(stress, step%direction)
     call laws%hardening%flow_stress(start(1), start(laws%first:laws%last), increment, &
         step%direction, step%flow)
-    if (laws%viscous) call apply_rate(laws, start, increment, step%frequency, step%flow)
+    if (laws%scaled) call apply_factors(laws, start, increment, step%frequency, step%flow)
     step%increment = increment
     step%stress = stress
     if (laws%kinematic) then

@@ -43,7 +43,7 @@ contains
       step%frequency = frequency_of(substeps)
       call integrate_step(laws, stress, start, strain, step)
       if (step%converged) call evolve_internal_variables(laws, start, step%increment, &
-          step%frequency, step%direction, internal_variables)
+          step%frequency, step%stress, step%direction, internal_variables)
     end if
   end subroutine integrate
 
@@ -79,7 +79,7 @@ contains
       if (.not. step%converged) return
       substep_stress = step%stress
       call evolve_internal_variables(laws, substep_start, step%increment, step%frequency, &
-          step%direction, internal_variables)
+          step%stress, step%direction, internal_variables)
       if (carries_derivatives(laws)) call chain(laws, step, substeps)
     end do
   end subroutine integrate_substeps

@@ -125,7 +125,9 @@ contains
           "`*PHASE`, also in those of springback; `duration` in `*POINT`."), &
       row("E164", "times", "The time of a phase or of a point is given twice, or for "// &
           "something it does not have.", "`duration`; or `speed` where the controlling "// &
-          "tool has a `move`.")]
+          "tool has a `move`."), &
+      row("E165", "heating", "A key of the heating of a material is missing, or has no effect.", &
+          "`heat_capacity` with `density`; a law `temperature`.")]
   end function of_job
 
 end module dd3_message_input_errors

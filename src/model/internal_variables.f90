@@ -22,6 +22,8 @@ module dd3_model_internal_variables
     !> Index of its first component among the internal variables of each material, `(n_material)`; 0
     !> if the material lacks it.
     integer, allocatable :: first(:)
+    !> Value at a stored zero, `(n_material)`.
+    real(wp), allocatable :: offset(:)
   end type variable_t
 
 contains
@@ -48,8 +50,10 @@ contains
           n = k
           found(k)%row = rows(i)
           allocate (found(k)%first(size(material)), source=0)
+          allocate (found(k)%offset(size(material)), source=0.0_wp)
         end if
         found(k)%first(m) = rows(i)%first
+        found(k)%offset(m) = rows(i)%offset
       end do
     end do
     variables = found(:n)
@@ -72,7 +76,7 @@ contains
     components = 0.0_wp
     first = variable%first(material)
     if (first == 0) return
-    components = values(first:first + variable%row%n_component - 1)
+    components = variable%offset(material) + values(first:first + variable%row%n_component - 1)
     if (variable%row%n_component /= 6) return
     components = matmul(kelvin_rotation(axes), components)/kelvin_factor
     components = components(kelvin_position)

@@ -9,7 +9,7 @@ module dd3_run_file_material
   use dd3_input_table, only : find_key
   use dd3_laws_choice, only : choose_law
   use dd3_material_check, only : describe_laws, law_backstress, law_hardening, law_modulus, &
-      law_rate, law_yield
+      law_rate, law_temperature, law_yield
   use dd3_material_description, only : description_t, law_choice_t
   use dd3_model_model, only : model_t
   use dd3_run_file_input, only : add_location
@@ -45,6 +45,7 @@ contains
         call json%end_array()
         call add_optional(json, "modulus", law_modulus, material%modulus)
         call add_optional(json, "rate", law_rate, material%rate)
+        call add_optional(json, "temperature", law_temperature, material%temperature)
         call json%add("rolling_direction", model%axes(:, 1, m))
         call json%add("normal_direction", model%axes(:, 3, m))
         n = 0

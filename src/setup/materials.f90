@@ -57,8 +57,12 @@ contains
       call material%laws%modulus%law%describe(description)
       text = text//source_line(description)
     end if
-    if (.not. material%laws%viscous) return
-    call material%laws%rate%law%describe(description)
+    if (material%laws%viscous) then
+      call material%laws%rate%law%describe(description)
+      text = text//source_line(description)
+    end if
+    if (.not. allocated(material%laws%temperature%law)) return
+    call material%laws%temperature%law%describe(description)
     text = text//source_line(description)
   end function law_sources
 

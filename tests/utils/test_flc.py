@@ -113,6 +113,26 @@ def test_rate_sensitivity():
     assert off[1] < 0.6 * off[0] < 2e-3 and found[1] > plane_strain(ratio) + 0.01, (off, found)
 
 
+def test_law_of_the_rate():
+    """Check that a law of the strain rate gives the limit of the same sensitivity in the equilibrium, at any rate, and
+    that both together are refused."""
+    m, ratio = 0.02, 0.99
+    wanted = Sheet(material(young=2e5), ratio, rate_sensitivity=m).length_at(Path(0.0), 0.0)
+    rated = material(young=2e5, hardening=f"swift K=500 e0=1e-6 n={N}\n  rate = power m={m} reference=1e-6")
+    for strain_rate in (0.1, 10.0):
+        assert Sheet(rated, ratio, strain_rate=strain_rate).length_at(Path(0.0), 0.0) == pytest.approx(wanted, rel=5e-3)
+    assert wanted > 1.1 * Sheet(material(young=2e5), ratio).length_at(Path(0.0), 0.0)
+    with pytest.raises(Problem, match="one of them"):
+        Sheet(rated, ratio, rate_sensitivity=m)
+
+
+def test_curve_at_a_rate():
+    """Check the stress of tension at a strain rate, at rest by default."""
+    rated = material(young=2e5, hardening="perfect Y0=200\n  rate = cowper_symonds C=40 p=5")
+    assert rated.curve(0.1)["stress"].iloc[-1] == pytest.approx(200)
+    assert rated.curve(0.1, rate=10.0)["stress"].iloc[-1] == pytest.approx(200 * (1 + 0.25**0.2), rel=1e-6)
+
+
 def test_directions():
     """Check that the limit turns with the material: Hill 1948 at 90 degrees, an isotropic criterion at 30."""
     swift = "swift K=500 e0=0.01 n=0.2"

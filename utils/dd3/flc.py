@@ -10,9 +10,10 @@ criterion, hardening and back-stresses are those of the program, by its library 
 one for `dd3 fld --curve` and `dd3 report --curve`; the picture has the same name.
 
 f0 is the thickness of the groove over that of the sheet. It is no property of the sheet that is measured: it is
-calibrated by one measured limit, mostly that of plane strain, or assumed. The laws do not depend on the strain rate:
-then the limit of plane strain is at most that of Considere, the exponent n of a power law. --rate-sensitivity adds the
-factor rate^m to the flow stress in the equilibrium of the groove (m is about 0.01 of steel, 0 of aluminium).
+calibrated by one measured limit, mostly that of plane strain, or assumed. Without a law of the strain rate in *MATERIAL
+the limit of plane strain is at most that of Considere, the exponent n of a power law. With one, the sheet is stretched
+at --strain-rate. Without, --rate-sensitivity adds the factor rate^m to the flow stress in the equilibrium of the groove
+(m is about 0.01 of steel, 0 of aluminium).
 """
 
 import math
@@ -28,7 +29,7 @@ from dd3.command import new_parser
 from dd3.errors import Problem
 from dd3.forming_limit import Curve, read_points
 from dd3.laws import Material
-from dd3.marciniak_kuczynski import LARGEST, LEFT, POINTS, RATIO, RIGHT, Limit, Sheet, curve_of, ratios_of
+from dd3.marciniak_kuczynski import LARGEST, LEFT, POINTS, RATIO, RIGHT, STRAIN_RATE, Limit, Sheet, curve_of, ratios_of
 from dd3.marciniak_kuczynski import Path as StrainPath
 from dd3.plot.figures import new_figure, save, tidy
 from dd3.tools.set_material import found
@@ -101,6 +102,8 @@ def main(words: Sequence[str] | None = None) -> None:
     parser.add_argument("--direction", type=float, default=0.0, metavar="DEGREES",
                         help="of the major strain to the rolling direction (0)")
     parser.add_argument("--rate-sensitivity", type=float, default=0.0, metavar="M", help="exponent m (0)")
+    parser.add_argument("--strain-rate", type=float, default=STRAIN_RATE, metavar="RATE",
+                        help=f"of the major strain in the sheet, 1/s, for a law of the rate ({STRAIN_RATE:g})")
     parser.add_argument("--measured", type=Path, metavar="FILE", help="table with measured limits to compare with")
     parser.add_argument("--engineering", action="store_true", help="the strains of --measured are engineering strains")
     parser.add_argument("--output", type=Path, default=Path("flc.csv"), help="table to write (flc.csv)")
@@ -110,11 +113,13 @@ def main(words: Sequence[str] | None = None) -> None:
     point = options.calibrate or (options.calibrate_plane_strain and (0.0, options.calibrate_plane_strain))
     if point and not (point[1] > 0 and LEFT <= point[0] / point[1] <= RIGHT):
         parser.error(f"a measured limit has a positive major strain, minor/major from {LEFT:g} to {RIGHT:g}")
+    if not options.strain_rate > 0:
+        parser.error("--strain-rate takes a number > 0")
     if options.points < 3 or not 0 <= options.rate_sensitivity < 1:
         parser.error("--points takes at least 3, --rate-sensitivity 0 to below 1")
     file = found(options.material)
     sheet = Sheet(Material(file=file, name=options.name), options.f0 or 1.0, options.direction,
-                  options.rate_sensitivity)
+                  options.rate_sensitivity, strain_rate=options.strain_rate)
     account = Account()
     measured = read_points(options.measured, options.engineering, account) if options.measured else None
     source = "given"
@@ -122,6 +127,8 @@ def main(words: Sequence[str] | None = None) -> None:
         sheet.ratio = calibrated(sheet, *point)
         source = f"calibrated by the limit {point[1]:g} at the minor strain {point[0]:g}"
     rate = f", m = {options.rate_sensitivity:g}" if options.rate_sensitivity else ""
+    if sheet.material.has_rate:
+        rate = f", {options.strain_rate:g} /s"
     turned = f", major strain at {options.direction:g} degrees" if options.direction else ""
     label = (f"{options.name or options.material.stem}: Marciniak-Kuczynski, f0 = {sheet.ratio:.5g} ({source})"
              f"{rate}{turned}")

@@ -78,6 +78,11 @@ class Material:
         self.block: Block = materials[0]
         self.name = self.block.name
 
+    @property
+    def has_rate(self) -> bool:
+        """Whether the flow stress depends on the strain rate."""
+        return (self.block.value("rate") or "none").lower() != "none"
+
     def __del__(self) -> None:
         if getattr(self, "handle", None):
             self.library.dd3laws_free(self.handle)
@@ -109,14 +114,14 @@ class Material:
         state = np.zeros(self.state_size) if state is None else state
         return float(self.library.dd3laws_flow_stress(self.handle, pointer(state)))
 
-    def curve(self, strain: float = 0.2, angle: float = 0.0, steps: int = 100) -> "pd.DataFrame":
+    def curve(self, strain: float = 0.2, angle: float = 0.0, steps: int = 100, rate: float = 0.0) -> "pd.DataFrame":
         """Return the curve of tension at an angle to the rolling direction, degrees, to a logarithmic strain; below
-        zero, of compression. Columns: strain, stress (MPa), plastic_strain (equivalent). The axes of the material do
-        not turn."""
+        zero, of compression; rate: strain rate, 1/s, of a law of the rate (0: at rest). Columns: strain, stress (MPa),
+        plastic_strain (equivalent). The axes of the material do not turn."""
         import pandas as pd
         point, rows, along = self.point(), [(0.0, 0.0, 0.0)], uniaxial(angle)
         for _ in range(steps):
-            point.pull(strain / steps, angle)
+            point.pull(strain / steps, angle, abs(strain) / steps / rate if rate else 0.0)
             stress = along @ point.stress / (along @ along)
             rows.append((rows[-1][0] + strain / steps, float(stress), float(point.state[0])))
         frame = pd.DataFrame(rows, columns=["strain", "stress", "plastic_strain"])
@@ -192,29 +197,32 @@ class Point:
         arrays = (self.strain, self.stress, self.state, self.tangent)
         self.arguments = (material.handle, *map(pointer, arrays), self.said, ctypes.c_size_t(LONGEST))
 
-    def update(self, strain: np.ndarray | Sequence[float]) -> bool:
-        """Integrate over a strain increment, 11 22 33 12 13 23; return False, with stress and state unchanged, where a
-        smaller one may succeed."""
+    def update(self, strain: np.ndarray | Sequence[float], time: float = 0.0) -> bool:
+        """Integrate over a strain increment, 11 22 33 12 13 23, in a time, s, which a law of the strain rate needs (0:
+        none, the rate is that of the state); return False, with stress and state unchanged, where a smaller one may
+        succeed."""
         self.strain[:] = strain
-        code = self.material.library.dd3laws_update(*self.arguments)
+        handle, along, *rest = self.arguments
+        code = (self.material.library.dd3laws_update_timed(handle, along, ctypes.c_double(time), *rest) if time else
+                self.material.library.dd3laws_update(*self.arguments))
         if code not in (CONVERGED, RETRY):
             raise Problem(f"{self.material.name}: {self.said.value.decode(errors='replace')}")
         return bool(code == CONVERGED)
 
-    def pull(self, strain: float, angle: float = 0.0) -> None:
-        """Pull by a strain increment at an angle to the rolling direction, with no other stress; in smaller steps where
-        the integration asks for them."""
+    def pull(self, strain: float, angle: float = 0.0, time: float = 0.0) -> None:
+        """Pull by a strain increment in a time at an angle to the rolling direction, with no other stress; in smaller
+        steps where the integration asks for them."""
         done, part = 0.0, 1.0
         while done < 1 - 1e-12:
             part = min(part, 1 - done)
-            if self.try_pull(part * strain, angle):
+            if self.try_pull(part * strain, angle, part * time):
                 done += part
             elif part < SMALLEST:
                 raise Problem(f"{self.material.name}: no equilibrium in tension at {angle:g} degrees")
             else:
                 part /= 2
 
-    def try_pull(self, strain: float, angle: float) -> bool:
+    def try_pull(self, strain: float, angle: float, time: float = 0.0) -> bool:
         """Find the strain increment of a step of tension by Newton's method; return False, at the start of the step,
         where it does not converge."""
         start = self.stress.copy(), self.state.copy()
@@ -224,7 +232,7 @@ class Point:
         found, force = strain * (along * (1 + 0.5) - 0.5 * np.array([1, 1, 1, 0, 0, 0])), 0.0
         for _ in range(NEWTON):
             self.stress[:], self.state[:] = start
-            if not self.update(found):
+            if not self.update(found, time):
                 break
             residual = np.append(self.stress - force * along, along @ found - strain)
             size = max(np.abs(self.stress).max(), 1e-300)

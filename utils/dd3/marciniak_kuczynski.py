@@ -16,8 +16,9 @@ increments and rotation of the material axes of a zone are those of the polar de
 program. The limit strain is reached when the groove thins RATIO times as fast as the sheet; the limit of a path is the
 least over the angles of the groove. The error is of first order in the step where the path of the groove bends.
 
-With a rate sensitivity m the stress of the groove is multiplied by (dp_b/dp_a)^m, p the equivalent plastic strain,
-from the step after the yield point.
+A law of the strain rate has the time of a step: that of the sheet's strain along the path at a constant rate, by the
+increment of the step before. Otherwise, with a rate sensitivity m, the stress of the groove is multiplied by
+(dp_b/dp_a)^m, p the equivalent plastic strain, from the step after the yield point.
 """
 
 import math
@@ -38,6 +39,7 @@ LARGEST = 2.5  # strain along the path up to which a limit is sought
 NEWTON, SOLVED = 25, 1e-8  # iterations; residual over the stress
 SCAN, HALVINGS = 15.0, 4  # angles of the groove, degrees: steps of the search, refinements
 LEFT, RIGHT, POINTS = -0.5, 1.0, 13  # ratios of minor and major strain of a curve, and their number
+STRAIN_RATE = 0.1  # 1/s, of the major strain in the sheet
 COARSE = 5.0  # steps of the search over those of the result
 PLANE = [0, 1, 3, 2]  # 11 22 12 33 of 11 22 33 12 13 23
 IN_PLANE = np.ix_(PLANE, PLANE)
@@ -61,8 +63,8 @@ class Zone:
         self.gradient, self.inverse, self.thickness, self.angle = np.eye(2), np.eye(2), 0.0, angle
         self.committed = (self.point.stress.copy(), self.point.state.copy())
 
-    def attempt(self, gradient: np.ndarray, thickness: float) -> bool:
-        """Integrate the step to a deformation gradient and a thickness strain; return False if it fails."""
+    def attempt(self, gradient: np.ndarray, thickness: float, time: float = 0.0) -> bool:
+        """Integrate the step to a deformation gradient and a thickness strain in a time; return False if it fails."""
         (a, b), (c, d) = (gradient @ self.inverse).tolist()
         turn = math.atan2(c - b, a + d)
         # The stretch U = R^T F, and its logarithm by eigenvalues.
@@ -78,7 +80,7 @@ class Zone:
                                         thickness - self.thickness)
         point = self.point
         point.stress[:], point.state[:] = self.committed
-        if not point.update((strain[0], strain[1], strain[3], strain[2], 0.0, 0.0)):
+        if not point.update((strain[0], strain[1], strain[3], strain[2], 0.0, 0.0), time):
             return False
         self.trial = gradient, thickness, self.angle + turn
         axes = axes_at(self.angle + turn)
@@ -139,13 +141,13 @@ class Groove:
         self.a, self.b = (Zone(sheet.material, -sheet.direction) for _ in range(2))
         self.found = np.zeros(4)  # q, length of the path, thickness strain of the sheet
 
-    def solve(self, guess: np.ndarray, thickness: float) -> bool:
+    def solve(self, guess: np.ndarray, thickness: float, time: float = 0.0) -> bool:
         """Find the unknowns for a thickness strain of the groove; return False where Newton's method fails."""
         x = guess.copy()
         for _ in range(NEWTON):
             gradient = np.array([[math.exp(x[2]), 0.0], [0.0, math.exp(self.path.ratio * x[2])]])
-            if not (self.a.attempt(gradient, x[3])
-                    and self.b.attempt(gradient + x[:2, None] * self.normal, thickness)):
+            if not (self.a.attempt(gradient, x[3], time)
+                    and self.b.attempt(gradient + x[:2, None] * self.normal, thickness, time)):
                 return False
             residual, matrix = self.balance(gradient, np.array([[1.0], [self.path.ratio]]) * gradient)
             if np.abs(residual).max() <= SOLVED * max(np.abs(self.b.stress).max(), 1e-300):
@@ -190,7 +192,8 @@ class Groove:
         rates = np.array([0.0, 0.0, 1 / (1 + self.path.ratio), -1.0])
         while self.found[2] < ceiling:
             before, thickness = self.found, self.b.thickness
-            solved = self.solve(before + step * rates, thickness - step)
+            time = step * abs(float(rates[2])) / self.sheet.strain_rate if self.sheet.material.has_rate else 0.0
+            solved = self.solve(before + step * rates, thickness - step, time)
             # A sheet that thins faster than the groove is the other branch beyond a bifurcation.
             if not solved or before[3] - self.trial[3] >= step:
                 step /= 4
@@ -221,13 +224,17 @@ class Sheet:
     """A sheet of a material with a groove.
 
     ratio: of the initial thicknesses, f0; direction: of the major strain to the rolling direction, degrees;
-    rate_sensitivity: the exponent m; step: the largest one of the groove's thickness strain.
+    rate_sensitivity: the exponent m, of a material without a law of the strain rate; strain_rate: of the major strain,
+    1/s, of one with it; step: the largest one of the groove's thickness strain.
     """
 
     def __init__(self, material: Material, ratio: float, direction: float = 0.0, rate_sensitivity: float = 0.0,
-                 step: float = STEP) -> None:
+                 step: float = STEP, strain_rate: float = STRAIN_RATE) -> None:
         self.material, self.ratio, self.direction = material, ratio, math.radians(direction)
-        self.rate_sensitivity, self.step = rate_sensitivity, step
+        if rate_sensitivity and material.has_rate:
+            raise Problem(f"the material {material.name} has a law of the strain rate, and a rate sensitivity is "
+                          "given; expected one of them")
+        self.rate_sensitivity, self.step, self.strain_rate = rate_sensitivity, step, strain_rate
         self.symmetric = direction % 90 == 0
 
     def length_at(self, path: Path, angle: float, ceiling: float = LARGEST, coarser: float = 1.0) -> float:

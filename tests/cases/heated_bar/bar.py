@@ -1,0 +1,42 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Print the expected values of the case: an adiabatic bar, by its equations, independently of the program.
+
+The true stress is E (strain - p), and Swift's flow stress times factors of the rate of p and of the temperature T;
+dT = 0.9 stress dp/(density heat capacity). scipy's Radau method integrates p and T.
+"""
+import numpy as np
+from scipy.integrate import solve_ivp
+
+YOUNG, POISSON, AREA, LENGTH = 2.06e5, 0.3, 100.0, 10.0
+HEATING = 0.9 / (7.85e-9 * 4.6e8)
+
+
+def flow_stress(p, temperature):
+    """At the reference rate."""
+    return 565.32 * (0.007117 + p) ** 0.2589 * np.interp(temperature, [20, 60, 100], [1, 0.95, 0.8])
+
+
+def stress(time, p):
+    """True stress at 3 mm/s."""
+    return YOUNG * (np.log1p(3 * time / LENGTH) - p)
+
+
+def rates(time, state):
+    """Rates of plastic strain and temperature."""
+    factor = stress(time, state[0]) / flow_stress(*state)
+    rate = 1e-3 * np.exp(min((factor - 1) / 0.02, 100)) if factor > 1 else 0.0
+    return [rate, HEATING * stress(time, state[0]) * rate]
+
+
+def main():
+    """Integrate to 13 mm."""
+    start = LENGTH / 3 * np.expm1(flow_stress(0, 40) / YOUNG)
+    p, temperature = solve_ivp(rates, (start, 1), [0, 40], "Radau", rtol=1e-9, atol=1e-13).y[:, -1]
+    now = stress(1, p)
+    force = now * AREA * np.exp(-p - 2 * POISSON * now / YOUNG)
+    print(f"p {p:.6f}, temperature {temperature:.4f}, stress {now:.3f} MPa, force {force:.2f} N")
+
+
+if __name__ == "__main__":
+    main()
