@@ -119,7 +119,13 @@ contains
           "run; `at = last`; the `*MATERIAL` of that run."), &
       row("E153", "cut of the sheet", "A curve of `*TRIM` is open, crosses another one, misses "// &
           "the sheet or is too small for its elements.", "Closed curves that are larger than "// &
-          "the elements; a finer mesh; `along`, `keep`.")]
+          "the elements; a finer mesh; `along`, `keep`."), &
+      row("E156", "friction law without a coefficient", "`friction_law` is a factor on "// &
+          "`friction`, which is zero or not given.", "`friction`; 1 if the factors of a table "// &
+          "are coefficients."), &
+      row("E157", "friction law", "The pressures of the law do not rise, or the friction "// &
+          "stress falls where the pressure rises.", "Pressures in order; factors that fall "// &
+          "more slowly than 1/p.")]
   end function of_job
 
 end module dd3_message_input_errors
