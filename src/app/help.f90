@@ -10,7 +10,8 @@ module dd3_app_help
   use dd3_base_version, only : program_name, program_version
   use dd3_input_help, only : help_blocks, help_topic, reference_markdown
   use dd3_message_table, only : help_message, message_markdown
-  use dd3_app_law_help, only : help_law, help_laws, law_reference_markdown
+  use dd3_app_law_help, only : friction_markdown, help_friction, help_law, help_laws, &
+      law_reference_markdown
   implicit none
   private
   public :: show_help, show_version
@@ -32,11 +33,13 @@ contains
       text = usage_text()//"blocks of the input:"//newline//help_blocks()// &
              "laws:"//newline//help_laws()//"elements:"//newline//help_elements()
     else if (same_name(topic, "markdown")) then
-      text = reference_markdown()//solver_markdown()//field_markdown()//law_reference_markdown()
+      text = reference_markdown()//solver_markdown()//field_markdown()//friction_markdown()// &
+          law_reference_markdown()
     else if (same_name(topic, "messages")) then
       text = message_markdown()
     else
-      text = help_topic(topic)//help_law(topic)//help_registry(topic)//help_message(topic)
+      text = help_topic(topic)//help_law(topic)//help_friction(topic)//help_registry(topic)// &
+          help_message(topic)
     end if
     if (text == "") then
       write (error_unit, '(a)') "there is no help on '"//topic// &

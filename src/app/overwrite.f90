@@ -38,6 +38,11 @@ contains
     do i = 1, size(case%tool)
       call check_file(case%tool(i)%patches, directory, case%tool(i)%source%at("patches"), errors)
     end do
+    do i = 1, size(case%tool)
+      do k = 1, size(case%tool(i)%friction_law)
+        call check_law(case%tool(i)%friction_law(k), directory, errors)
+      end do
+    end do
     do i = 1, size(case%start)
       call check_file(case%start(i)%from//"/"//restart_name, directory, &
           case%start(i)%source%at("from"), errors)

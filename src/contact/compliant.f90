@@ -21,6 +21,7 @@
 !> Computational Contact Mechanics, 2nd ed. (2006), chapters 5 and 10 (barrier, elastic stick).
 module dd3_contact_compliant
   use dd3_base_kinds, only : wp
+  use dd3_contact_friction, only : friction_limit_t, friction_t, sliding_t
   use dd3_contact_operator, only : coulomb_operator, no_direction, normal_force_t, status_gap, &
       status_slip, status_stick, traction_t
   implicit none
@@ -119,13 +120,14 @@ contains
   !> Kernel: evaluate status, force of the sheet on the tool, N, and its linearisation
   !> dF = D du + E dlambda.
   pure subroutine compliant_operator(layer, normal, gap, dnormal, lambda, committed, slip, &
-      friction, status, force, d, e, gap_gradient)
+      friction, sliding, status, force, d, e, gap_gradient)
     type(layer_t), intent(in) :: layer
     !> Outward unit normal of the tool, gap, mm, and gradient of the normal, 1/mm.
     real(wp), intent(in) :: normal(3), gap, dnormal(3, 3)
     !> Contact force, that of the committed state, rotated with the normal, N; slip since then, mm.
     real(wp), intent(in) :: lambda(3), committed(3), slip(3)
-    real(wp), intent(in) :: friction
+    type(friction_t), intent(in) :: friction
+    type(sliding_t), intent(in) :: sliding
     !> On entry a status that is kept if there is contact, or `status_gap` for the law's.
     integer, intent(inout) :: status
     real(wp), intent(out) :: force(3), d(3, 3), e(3, 3)
@@ -134,6 +136,7 @@ contains
 
     type(normal_force_t) :: sigma_n
     type(traction_t) :: traction
+    type(friction_limit_t) :: limit
     real(wp) :: gradient(3)
     real(wp) :: line, left, slope, weight, committed_normal, stick, scale, memory
     real(wp) :: tangential(3)
@@ -167,12 +170,14 @@ contains
     traction%by_u = scale
     traction%by_lambda = memory
     traction%smallest = no_direction*(norm2(lambda) + norm2(committed) + scale*norm2(slip))
+    limit = friction%limit(-sigma_n%value, sliding)
     if (status == status_gap) then
       tangential = traction%value - dot_product(normal, traction%value)*normal
       status = status_stick
-      if (friction <= 0.0_wp .or. norm2(tangential) > -friction*sigma_n%value) status = status_slip
+      if (friction%coefficient <= 0.0_wp .or. norm2(tangential) > limit%value) &
+          status = status_slip
     end if
-    call coulomb_operator(status, normal, dnormal, sigma_n, traction, friction, force, d, e)
+    call coulomb_operator(status, normal, dnormal, sigma_n, traction, limit, force, d, e)
   end subroutine compliant_operator
 
 end module dd3_contact_compliant

@@ -8,20 +8,22 @@
 !> sigma_n = lambda.n + p d and sigma_t = T (lambda + p_t w) with p_t = p, or a larger penalty of
 !> its own where a support prescribes the slip. The three states are
 !>     gap    sigma_n > 0                                F = 0
-!>     stick  sigma_n <= 0, |sigma_t| <= -mu sigma_n     F = sigma_n n + sigma_t
-!>     slip   sigma_n <= 0, |sigma_t| >  -mu sigma_n     F = sigma_n (n - mu t)
-!> with t = sigma_t / |sigma_t|. Without friction every node in contact slips. The linearisation is
+!>     stick  sigma_n <= 0, |sigma_t| <= Y     F = sigma_n n + sigma_t
+!>     slip   sigma_n <= 0, |sigma_t| >  Y     F = sigma_n n + Y t
+!> with t = sigma_t / |sigma_t| and the limit Y(-sigma_n) of the friction law, -mu sigma_n of a
+!> constant coefficient. Without friction every node in contact slips. The linearisation is
 !> dF = D du + E dlambda; with N = dn/dx and v = lambda + p_t w, d(sigma_n)/du = N lambda + p n and
 !> d(sigma_t)/du = p_t T - (n.v) N - n (N v)^T.
 !>
 !> Arguments of all procedures: `normal` n; `distance` d, mm; `dnormal` N, symmetric, 1/mm;
-!> `lambda`, N; `slip` w, mm; `penalty` p and p_t, N/mm; `friction` mu. Results: `force` F, N;
-!> `d` D, N/mm; `e` E.
+!> `lambda`, N; `slip` w, mm; `penalty` p and p_t, N/mm; `friction` and `sliding`, which give Y.
+!> Results: `force` F, N; `d` D, N/mm; `e` E.
 !> Source: Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353-375; Pietrzak and
 !> Curnier, Comput. Methods Appl. Mech. Eng. 177 (1999) 351-381; Heege and Alart, Int. J. Numer.
 !> Methods Eng. 39 (1996) 165-184.
 module dd3_contact_operator
   use dd3_base_kinds, only : wp
+  use dd3_contact_friction, only : friction_limit_t, friction_t, sliding_t
   implicit none
   private
   public :: status_gap, status_stick, status_slip, contact_status, round_off
@@ -56,31 +58,37 @@ module dd3_contact_operator
 contains
 
   !> Return the status of a node. At zero gap and force it sticks, so that a load can build up.
-  pure integer function contact_status(normal, distance, lambda, slip, penalty, friction) &
+  pure integer function contact_status(normal, distance, lambda, slip, penalty, friction, sliding) &
       result(status)
-    real(wp), intent(in) :: normal(3), distance, lambda(3), slip(3), penalty(2), friction
+    real(wp), intent(in) :: normal(3), distance, lambda(3), slip(3), penalty(2)
+    type(friction_t), intent(in) :: friction
+    type(sliding_t), intent(in) :: sliding
 
+    type(friction_limit_t) :: limit
     real(wp) :: sigma_n, tangential(3), v(3)
 
     sigma_n = dot_product(lambda, normal) + penalty(1)*distance
     if (sigma_n > penalty(1)*round_off) then
       status = status_gap
-    else if (friction <= 0.0_wp) then
+    else if (friction%coefficient <= 0.0_wp) then
       status = status_slip
     else
       v = lambda + penalty(2)*slip
       tangential = v - dot_product(normal, v)*normal
       status = status_stick
-      if (norm(tangential) > max(-friction*sigma_n, penalty(2)*round_off)) status = status_slip
+      limit = friction%limit(-sigma_n, sliding)
+      if (norm(tangential) > max(limit%value, penalty(2)*round_off)) status = status_slip
     end if
   end function contact_status
 
   !> Kernel: evaluate force and linearisation of a node with a given status.
   pure subroutine contact_operator_of_status(status, normal, distance, dnormal, lambda, slip, &
-      penalty, friction, force, d, e)
+      penalty, friction, sliding, force, d, e)
     integer, intent(in) :: status
     real(wp), intent(in) :: normal(3), distance, dnormal(3, 3), lambda(3), slip(3)
-    real(wp), intent(in) :: penalty(2), friction
+    real(wp), intent(in) :: penalty(2)
+    type(friction_t), intent(in) :: friction
+    type(sliding_t), intent(in) :: sliding
     real(wp), intent(out) :: force(3), d(3, 3), e(3, 3)
 
     type(normal_force_t) :: sigma_n
@@ -95,18 +103,18 @@ contains
     sigma_n%by_lambda = 1.0_wp
     traction = traction_t(lambda + penalty(2)*slip, penalty(2), 1.0_wp, &
         no_direction*(norm(lambda) + penalty(2)*norm(slip)))
-    call coulomb_operator(status, normal, dnormal, sigma_n, traction, friction, force, d, e)
+    call coulomb_operator(status, normal, dnormal, sigma_n, traction, &
+        friction%limit(-sigma_n%value, sliding), force, d, e)
   end subroutine contact_operator_of_status
 
   !> Kernel: evaluate force and linearisation of a node in contact by Coulomb's law.
-  pure subroutine coulomb_operator(status, normal, dnormal, sigma_n, traction, friction, force, d, &
-      e)
+  pure subroutine coulomb_operator(status, normal, dnormal, sigma_n, traction, limit, force, d, e)
     !> Stick or slip.
     integer, intent(in) :: status
     real(wp), intent(in) :: normal(3), dnormal(3, 3)
     type(normal_force_t), intent(in) :: sigma_n
     type(traction_t), intent(in) :: traction
-    real(wp), intent(in) :: friction
+    type(friction_limit_t), intent(in) :: limit
     real(wp), intent(out) :: force(3), d(3, 3), e(3, 3)
 
     real(wp) :: tangential(3), dtangential(3, 3), v_normal, dnormal_v(3)
@@ -131,46 +139,47 @@ contains
         e(j, j) = e(j, j) + traction%by_lambda
       end do
     else
-      call slip_operator(normal, dnormal, sigma_n, traction, tangential, dtangential, friction, &
+      call slip_operator(normal, dnormal, sigma_n, traction, tangential, dtangential, limit, &
           force, d, e)
     end if
   end subroutine coulomb_operator
 
   !> Kernel: evaluate force and linearisation of a slipping node.
   pure subroutine slip_operator(normal, dnormal, sigma_n, traction, tangential, dtangential, &
-      friction, force, d, e)
+      limit, force, d, e)
     real(wp), intent(in) :: normal(3), dnormal(3, 3)
     type(normal_force_t), intent(in) :: sigma_n
     type(traction_t), intent(in) :: traction
     !> sigma_t, N, and its derivative in the displacement, N/mm.
     real(wp), intent(in) :: tangential(3), dtangential(3, 3)
-    real(wp), intent(in) :: friction
+    type(friction_limit_t), intent(in) :: limit
     real(wp), intent(out) :: force(3), d(3, 3), e(3, 3)
 
-    real(wp) :: length, quotient, limit, cone(3), t(3), p_t(3, 3)
+    !> Derivative of the force in sigma_n.
+    real(wp) :: by_normal(3)
+    real(wp) :: length, quotient, t(3), p_t(3, 3)
     integer :: j
 
     length = norm(tangential)
-    limit = -friction*sigma_n%value
     t = 0.0_wp
     if (length > traction%smallest) t = tangential/length
     quotient = 0.0_wp
-    if (length > traction%smallest .and. abs(limit) < largest_quotient*length) then
-      quotient = limit/length
-    else if (limit > 0.0_wp) then
+    if (length > traction%smallest .and. abs(limit%value) < largest_quotient*length) then
+      quotient = limit%value/length
+    else if (limit%value > 0.0_wp) then
       quotient = merge(largest_quotient, 1.0_wp, length > traction%smallest)
     end if
-    cone = normal - friction*t
-    force = sigma_n%value*cone
+    by_normal = normal - limit%slope*t
+    force = sigma_n%value*normal + limit%value*t
     do j = 1, 3
       p_t(:, j) = -quotient*t*t(j)
       p_t(j, j) = p_t(j, j) + quotient
     end do
     d = matmul(p_t, dtangential)
     do j = 1, 3
-      d(:, j) = d(:, j) + cone*sigma_n%by_u(j) + sigma_n%value*dnormal(:, j)
+      d(:, j) = d(:, j) + by_normal*sigma_n%by_u(j) + sigma_n%value*dnormal(:, j)
       e(:, j) = traction%by_lambda*p_t(:, j) &
-          + (sigma_n%by_lambda*cone - traction%by_lambda*matmul(p_t, normal))*normal(j)
+          + (sigma_n%by_lambda*by_normal - traction%by_lambda*matmul(p_t, normal))*normal(j)
     end do
   end subroutine slip_operator
 

@@ -8,7 +8,7 @@ module dd3_input_fill
   use dd3_input_case, only : case_t, boundary_spec_t, drawbead_spec_t, history_spec_t, tool_spec_t
   use dd3_input_fill_blank, only : fill_adaptive, fill_blank, fill_mesh, fill_set, &
       fill_start, fill_trim
-  use dd3_input_fill_material, only : fill_material
+  use dd3_input_fill_material, only : add_law, fill_material
   use dd3_input_fill_phase, only : fill_phase, fill_limits, fill_newton, fill_contact
   use dd3_input_fill_point, only : fill_point
   use dd3_input_table, only : axis_of
@@ -217,10 +217,17 @@ contains
     type(tool_spec_t), intent(inout) :: tool
     type(block_t), intent(in) :: block
 
+    integer :: i
+
     tool%name = block%name
     tool%source = block
     tool%patches = resolve_path(block%folder, block%word("patches"))
     tool%friction = block%number("friction")
+    allocate (tool%friction_law(0))
+    do i = 1, block%n_entry
+      if (block%entry(i)%key /= "friction_law" .or. .not. block%entry(i)%valid) cycle
+      call add_law(tool%friction_law, block%entry(i), block%folder)
+    end do
     tool%contact = block%word("contact")
     if (block%has("position")) tool%position = block%numbers("position")
   end subroutine fill_tool

@@ -9,7 +9,7 @@ module dd3_input_fill_material
   use dd3_input_number, only : parse_pair, parse_real
   implicit none
   private
-  public :: fill_material, frame_of
+  public :: add_law, fill_material, frame_of
 
 contains
 
@@ -62,6 +62,7 @@ contains
     end if
   end subroutine fill_material
 
+  !> Append a law to a list.
   subroutine add_law(law, entry, folder)
     type(law_spec_t), allocatable, intent(inout) :: law(:)
     type(entry_t), intent(in) :: entry

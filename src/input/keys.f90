@@ -176,6 +176,8 @@ contains
     key = [ &
       row("patches", kind_text, "", "", "file of the surface's Bezier patches (.bez)"), &
       row("friction", kind_real, "", "0", "coefficient of friction", lower=zero), &
+      row("friction_law", kind_law, "", "-", "factor on `friction` by the contact pressure; "// &
+          "several are multiplied", repeatable=.true.), &
       row("contact", kind_name, "", "", "node set of the candidates on the sheet", form="set"), &
       row("position", kind_reals, "mm", "0 0 0", "initial offset", count=3)]
   end function tool_keys

@@ -120,6 +120,12 @@ contains
       row("E153", "cut of the sheet", "A curve of `*TRIM` is open, crosses another one, misses "// &
           "the sheet or is too small for its elements.", "Closed curves that are larger than "// &
           "the elements; a finer mesh; `along`, `keep`."), &
+      row("E156", "friction law without a coefficient", "`friction_law` is a factor on "// &
+          "`friction`, which is zero or not given.", "`friction`; 1 if the factors of a table "// &
+          "are coefficients."), &
+      row("E157", "friction law", "The pressures of the law do not rise, or the friction "// &
+          "stress falls where the pressure rises.", "Pressures in order; factors that fall "// &
+          "more slowly than 1/p."), &
       row("E163", "strain rate without a time", "The flow stress depends on the strain rate, "// &
           "but a phase, or a point, has no time.", "`duration` or `speed` in each "// &
           "`*PHASE`, also in those of springback; `duration` in `*POINT`."), &

@@ -5,6 +5,7 @@
 !> over the faces, so that a uniform pressure gives the consistent forces on the nodes.
 module dd3_model_contact_points
   use dd3_base_kinds, only : wp
+  use dd3_base_ranks, only : sum_over_ranks
   use dd3_sheet_surface_point, only : surface_point_t, crossing_point, edge_point, &
       face_point, node_point
   use dd3_linalg_tensor, only : cross
@@ -13,7 +14,7 @@ module dd3_model_contact_points
   implicit none
   private
   public :: set_contact_points, set_point_owners, keep_own_points, points_of_face, point_areas, &
-      nodal_areas
+      contact_areas, nodal_areas
 
   !> Length over the thickness beyond which an edge of the mesh has contact with borders of its own.
   !> The nodes of shorter ones follow the rounding of the border, whose radius is half a thickness.
@@ -394,6 +395,23 @@ contains
       end do
     end do
   end function point_areas
+
+  !> Return the areas over which the forces of the contact points of this rank act, `(n_contact)`,
+  !> mm2: a point without contact faces has the mean area.
+  function contact_areas(model, x) result(area)
+    type(model_t), intent(in) :: model
+    !> Positions of the nodes, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
+    real(wp), allocatable :: area(:)
+
+    real(wp) :: sums(2)
+
+    area = point_areas(model, x)
+    sums = [sum(area), real(count(area > 0.0_wp), wp)]
+    call sum_over_ranks(2, sums)
+    if (sums(2) < 1.0_wp) sums = [model%thickness**2, 1.0_wp]
+    where (.not. area > 0.0_wp) area = sums(1)/sums(2)
+  end function contact_areas
 
   !> Return the areas of the contact faces that belong to their nodes, `(n_node)`, mm2.
   pure function nodal_areas(model, x) result(area)

@@ -216,7 +216,7 @@ contains
         end if
         do d = 0, 3
           direction = normal
-          if (d > 0) direction = model%tool(tool)%friction*identity(:, d)
+          if (d > 0) direction = model%tool(tool)%friction%coefficient*identity(:, d)
           if (phase%pressed(tool)) direction = direction &
               - dot_product(direction, phase%direction(:, tool))*phase%direction(:, tool)
           call body%hold(x, direction)

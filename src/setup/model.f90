@@ -14,6 +14,7 @@ module dd3_setup_model
   use dd3_model_redistribution, only : divide_model
   use dd3_setup_checks, only : check_solver, check_start, check_supports
   use dd3_setup_element, only : set_element
+  use dd3_setup_friction, only : set_friction
   use dd3_setup_materials, only : new_materials
   use dd3_setup_on_sheet, only : set_on_sheet
   use dd3_setup_sheet, only : new_sheet
@@ -135,7 +136,7 @@ contains
     do t = 1, model%n_tool
       if (.not. (case%tool(t)%source%valid .and. case%tool(t)%source%has("patches"))) cycle
       model%tool(t)%name = case%tool(t)%name
-      model%tool(t)%friction = case%tool(t)%friction
+      call set_friction(model%tool(t)%friction, case%tool(t), errors)
       model%tool(t)%position = case%tool(t)%position
       call read_tool_surface(model%tool(t)%surface, case%tool(t)%patches, &
           case%tool(t)%source%at("patches"), errors)

@@ -5,7 +5,8 @@ module dd3_system_compliant_contact
   use dd3_base_kinds, only : wp
   use dd3_base_threads, only : least_nodes, threads_for
   use dd3_contact_compliant, only : compliant_operator, fraction_of, layer_t, rotated
-  use dd3_contact_operator, only : status_gap, status_stick
+  use dd3_contact_friction, only : friction_limit_t, friction_t, sliding_t
+  use dd3_contact_operator, only : status_gap, status_slip
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_model_contact_layer, only : layer_at
   use dd3_sheet_surface_point, only : surface_point_t
@@ -129,14 +130,16 @@ contains
     integer, intent(in) :: c
     type(layer_t), intent(in) :: layer
     type(hit_t), intent(in) :: hit
-    !> Slip, mm, and coefficient of friction.
-    real(wp), intent(in) :: slip(3), friction
+    real(wp), intent(in) :: slip(3)
+    type(friction_t), intent(in) :: friction
     !> If the point is one; the layer is then its fraction by the weight.
     type(crossing_t), intent(in), optional :: crossing
 
+    type(sliding_t) :: sliding
     real(wp) :: gap, committed(3)
 
     gap = hit%distance + offset_at(trial, self%tool(c), c)
+    sliding = sliding_at(self, c, crossing)
     committed = 0.0_wp
     if (self%tool(c) == self%committed_tool(c)) committed = &
         rotated(self%committed_force(:, c), self%committed_normal(:, c), hit%normal)
@@ -144,16 +147,26 @@ contains
     self%distance(c) = gap - layer%height
     self%status(c) = status_gap
     call compliant_operator(layer, hit%normal, gap, hit%dnormal, trial%contact%lambda(:, c), &
-        committed, &
-        slip, friction, self%status(c), self%force(:, c), self%d(:, :, c), self%e(:, :, c), &
-        hit%gap_gradient)
+        committed, slip, friction, sliding, self%status(c), self%force(:, c), self%d(:, :, c), &
+        self%e(:, :, c), hit%gap_gradient)
     if (present(crossing)) call add_crossing_terms(self, c, layer, crossing, gap, &
-        trial%contact%lambda(:, c), committed, slip, friction)
+        trial%contact%lambda(:, c), committed, slip, friction, sliding)
   end subroutine evaluate_layer
+
+  !> Return what friction depends on at a point; a crossing has its fraction of the area.
+  pure type(sliding_t) function sliding_at(self, c, crossing) result(sliding)
+    type(contact_work_t), intent(in) :: self
+    integer, intent(in) :: c
+    type(crossing_t), intent(in), optional :: crossing
+
+    sliding = self%sliding(c)
+    if (present(crossing)) sliding%area = crossing%weight*sliding%area
+  end function sliding_at
 
   !> Add the derivatives of the force at a crossing that a point on a surface does not have: by the
   !> normal as the edge turns, and by the weight.
-  subroutine add_crossing_terms(self, c, layer, crossing, gap, lambda, committed, slip, friction)
+  subroutine add_crossing_terms(self, c, layer, crossing, gap, lambda, committed, slip, friction, &
+      sliding)
     !> Has force, status and derivatives of the law.
     type(contact_work_t), intent(inout) :: self
     integer, intent(in) :: c
@@ -162,10 +175,14 @@ contains
     !> mm.
     real(wp), intent(in) :: gap
     !> As for `compliant_operator`.
-    real(wp), intent(in) :: lambda(3), committed(3), slip(3), friction
+    real(wp), intent(in) :: lambda(3), committed(3), slip(3)
+    type(friction_t), intent(in) :: friction
+    type(sliding_t), intent(in) :: sliding
 
     real(wp), parameter :: still(3, 3) = 0.0_wp
+    type(friction_limit_t) :: limit
     real(wp) :: square, force(3), d(3, 3, 2), e(3, 3), change(3)
+    real(wp) :: by_normal, normal_force
     integer :: status, i
 
     self%by_edge(:, :, c) = 0.0_wp
@@ -174,20 +191,27 @@ contains
     associate (along => crossing%along, n => crossing%normal)
       square = dot_product(along, along)
       if (square > tiny(1.0_wp)) then
-        call compliant_operator(layer, n, gap, still, lambda, committed, slip, friction, status, &
-            force, d(:, :, 1), e)
+        call compliant_operator(layer, n, gap, still, lambda, committed, slip, friction, sliding, &
+            status, force, d(:, :, 1), e)
         call compliant_operator(layer, n, gap, spread(along, 2, 3)*spread(along, 1, 3), lambda, &
-            committed, slip, friction, status, force, d(:, :, 2), e)
+            committed, slip, friction, sliding, status, force, d(:, :, 2), e)
         change = matmul(d(:, :, 2) - d(:, :, 1), along)/square
         do i = 1, 3
           self%by_edge(:, i, c) = -change*n(i)
         end do
       end if
       ! On the line of the law's scale the normal force is proportional to the area as far as the
-      ! layer is softer than that.
-      change = self%force(:, c)
-      if (status == status_stick) change = dot_product(n, change)*n
-      change = (1.0_wp - dot_product(n, matmul(self%e(:, :, c), n)))/crossing%weight*change
+      ! layer is softer than that. The limit Y of the friction follows as A times a function of N/A.
+      by_normal = dot_product(n, matmul(self%e(:, :, c), n))
+      change = dot_product(n, self%force(:, c))*n
+      force = self%force(:, c) - change
+      change = (1.0_wp - by_normal)/crossing%weight*change
+      if (status == status_slip) then
+        normal_force = -dot_product(n, self%force(:, c))
+        limit = friction%limit(normal_force, sliding)
+        change = change + (1.0_wp - by_normal*limit%slope*normal_force &
+            /max(limit%value, tiny(1.0_wp)))/crossing%weight*force
+      end if
     end associate
     do i = 1, 3
       self%d(:, i, c) = self%d(:, i, c) + change*crossing%weight_by_point(i)
@@ -269,6 +293,7 @@ contains
     type(crossing_t), intent(in), optional :: crossing
 
     real(wp), parameter :: no_slip(3) = 0.0_wp
+    type(sliding_t) :: sliding
     real(wp) :: gap, committed(3)
 
     gap = hit%distance + offset_at(state, self%tool(c), c)
@@ -279,11 +304,14 @@ contains
     committed = 0.0_wp
     if (self%committed_tool(c) == self%tool(c)) committed = self%committed_force(:, c)
     self%rise(c) = 0.0_wp
-    call compliant_operator(layer, hit%normal, gap, hit%dnormal, state%contact%lambda(:, c), &
-        committed, no_slip, model%tool(self%tool(c))%friction, self%status(c), &
-        self%force(:, c), self%d(:, :, c), self%e(:, :, c), hit%gap_gradient)
-    if (present(crossing)) call add_crossing_terms(self, c, layer, crossing, gap, &
-        state%contact%lambda(:, c), committed, no_slip, model%tool(self%tool(c))%friction)
+    sliding = sliding_at(self, c, crossing)
+    associate (friction => model%tool(self%tool(c))%friction)
+      call compliant_operator(layer, hit%normal, gap, hit%dnormal, state%contact%lambda(:, c), &
+          committed, no_slip, friction, sliding, self%status(c), self%force(:, c), &
+          self%d(:, :, c), self%e(:, :, c), hit%gap_gradient)
+      if (present(crossing)) call add_crossing_terms(self, c, layer, crossing, gap, &
+          state%contact%lambda(:, c), committed, no_slip, friction, sliding)
+    end associate
   end subroutine predict_layer
 
   !> Add the points to the linear system.

@@ -5,6 +5,7 @@ module dd3_system_contact
   use dd3_base_ranks, only : any_rank
   use dd3_contact_operator, only : round_off, status_gap
   use dd3_model_contact_layer, only : contact_penalty
+  use dd3_model_contact_points, only : contact_areas
   use dd3_model_model, only : model_t
   use dd3_model_outward_normals, only : outward_normals
   use dd3_model_state, only : state_t
@@ -64,6 +65,8 @@ contains
     call choose(system%formulation, model%phase(committed%phase)%mixed)
     associate (contact => system%contact, phase => model%phase(committed%phase))
       contact%outward = outward_normals(model, committed%x)
+      if (any([(model%tool(tool)%friction%varies(), tool=1, model%n_tool)])) &
+          contact%sliding%area = contact_areas(model, committed%x)
       contact%turn_limited = .false.
       contact%search_distance = model%tolerance%tool_search
       touching = .false.

@@ -2,6 +2,7 @@
 !> Data of the contact of the candidates in one state, for the residuals and the reduced system.
 module dd3_system_contact_work
   use dd3_base_kinds, only : wp
+  use dd3_contact_friction, only : sliding_t
   use dd3_contact_operator, only : status_gap
   implicit none
   private
@@ -47,6 +48,8 @@ module dd3_system_contact_work
     real(wp), allocatable :: committed_x(:, :), turning(:, :)
     !> Outward normals of the sheet in the committed state, `(3, n_contact)`.
     real(wp), allocatable :: outward(:, :)
+    !> What friction depends on, in the committed state, `(n_contact)`.
+    type(sliding_t), allocatable :: sliding(:)
     !> Distance up to which the tools are looked for, mm.
     real(wp) :: search_distance = 0.0_wp
   end type contact_work_t
@@ -68,6 +71,7 @@ contains
     allocate (self%place(n_contact), source=0.5_wp)
     allocate (self%by_place(3, 2, n_contact), self%by_edge(3, 3, n_contact), source=0.0_wp)
     allocate (self%near(n_contact), source=.false.)
+    allocate (self%sliding(n_contact))
     allocate (self%d(3, 3, n_contact), self%e(3, 3, n_contact), source=0.0_wp)
     allocate (self%outward(3, n_contact), self%committed_x(3, n_contact), &
         self%turning(3, n_contact), source=0.0_wp)

@@ -11,6 +11,7 @@
 module dd3_system_mixed_contact
   use dd3_base_kinds, only : wp
   use dd3_base_threads, only : least_nodes, threads_for
+  use dd3_contact_friction, only : coulomb, friction_t
   use dd3_contact_operator, only : contact_operator_of_status, contact_status, status_gap, &
       status_slip, status_stick
   use dd3_linalg_matrix, only : block_matrix_t, copy_blocks
@@ -96,11 +97,11 @@ contains
         contact%onset(c) = 0.0_wp
         contact%distance(c) = hit%distance
         contact%status(c) = contact_status(hit%normal, contact%distance(c), &
-            trial%contact%lambda(:, c), &
-            slip, penalty, model%tool(tool)%friction)
+            trial%contact%lambda(:, c), slip, penalty, model%tool(tool)%friction, &
+            contact%sliding(c))
         call contact_operator_of_status(contact%status(c), hit%normal, contact%distance(c), &
             hit%dnormal, trial%contact%lambda(:, c), slip, penalty, model%tool(tool)%friction, &
-            contact%force(:, c), contact%d(:, :, c), contact%e(:, :, c))
+            contact%sliding(c), contact%force(:, c), contact%d(:, :, c), contact%e(:, :, c))
       end if
     end associate
     trial%contact%status(c) = contact%status(c)
@@ -166,7 +167,7 @@ contains
 
     real(wp), parameter :: no_slip(3) = 0.0_wp
     type(hit_t) :: hit
-    real(wp) :: friction
+    type(friction_t) :: friction
     logical :: leaving
 
     if (model%contact_point(c)%moves) then
@@ -190,12 +191,12 @@ contains
         end if
       else if (contact%status(c) == status_gap .and. .not. leaving .and. hit%distance < 0.0_wp) then
         contact%status(c) = status_slip
-        friction = 0.0_wp
+        friction = coulomb(0.0_wp)
       end if
       call contact_operator_of_status(contact%status(c), hit%normal, 0.0_wp, hit%dnormal, &
           committed%contact%lambda(:, c), no_slip, &
           candidate_penalty(model, phase, c, hit%normal, no_slip), friction, &
-          contact%force(:, c), contact%d(:, :, c), contact%e(:, :, c))
+          contact%sliding(c), contact%force(:, c), contact%d(:, :, c), contact%e(:, :, c))
     end associate
   end subroutine predict_point
 

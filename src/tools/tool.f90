@@ -3,6 +3,7 @@
 !> sheet where it is placed.
 module dd3_tools_tool
   use dd3_base_kinds, only : wp
+  use dd3_contact_friction, only : friction_t
   use dd3_tools_closest, only : border_t, find_contact, hint_t, hit_t
   use dd3_tools_crossing, only : crossing_t, find_crossing
   use dd3_tools_placement, only : placement_t
@@ -17,8 +18,8 @@ module dd3_tools_tool
     character(len=:), allocatable :: name
     !> Surface in the frame of its file.
     type(surface_t) :: surface
-    !> Coefficient of Coulomb friction against the sheet.
-    real(wp) :: friction = 0.0_wp
+    !> Friction against the sheet.
+    type(friction_t) :: friction
     !> Initial offset of the surface's frame from the global one, mm.
     real(wp) :: position(3) = 0.0_wp
   end type tool_t

@@ -7,6 +7,7 @@ program benchmark_contact
   use dd3_base_clock, only : wall_time
   use dd3_base_error, only : location_t, error_list_t
   use dd3_setup_tool_surface, only : read_tool_surface
+  use dd3_contact_friction, only : coulomb, sliding_t
   use dd3_contact_operator, only : contact_operator_of_status, contact_status
   use dd3_tools_surface, only : surface_t
   use dd3_tools_closest, only : hint_t, hit_t, find_contact
@@ -102,9 +103,10 @@ contains
     start = wall_time()
     do i = 1, n_query
       lambda = -100.0_wp*hit%normal + [0.0_wp, 1.0_wp, 1.0e-5_wp*i]
-      status = contact_status(hit%normal, hit%distance, lambda, slip, penalty, 0.144_wp)
+      status = contact_status(hit%normal, hit%distance, lambda, slip, penalty, &
+          coulomb(0.144_wp), sliding_t())
       call contact_operator_of_status(status, hit%normal, hit%distance, hit%dnormal, lambda, &
-          slip, penalty, 0.144_wp, force, d, e)
+          slip, penalty, coulomb(0.144_wp), sliding_t(), force, d, e)
       total = total + force(1) + d(1, 2) + e(2, 3)
     end do
     call report("operator", wall_time() - start, n_query, total)

@@ -1,0 +1,28 @@
+! SPDX-License-Identifier: GPL-3.0-or-later
+!> Friction laws for the contact tests.
+module friction_examples
+  use dd3_base_kinds, only : wp
+  use dd3_base_parameter, only : law_value_t, pair_name
+  use dd3_contact_friction, only : friction_t
+  implicit none
+  private
+  public :: add_example
+
+contains
+
+  !> Add a law by its name; none for an empty one.
+  subroutine add_example(friction, name)
+    type(friction_t), intent(inout) :: friction
+    character(len=*), intent(in) :: name
+
+    select case (name)
+    case ("power")
+      call friction%add_law(name, [law_value_t("p0", 10.0_wp), law_value_t("n", 0.8_wp), &
+          law_value_t("p_min", 2.0_wp), law_value_t("p_max", 100.0_wp)])
+    case ("table")
+      call friction%add_law(name, [law_value_t(pair_name, 1.2_wp, 1.0_wp), &
+          law_value_t(pair_name, 1.0_wp, 20.0_wp), law_value_t(pair_name, 0.7_wp, 150.0_wp)])
+    end select
+  end subroutine add_example
+
+end module friction_examples
