@@ -22,7 +22,7 @@ def check_values(path):
     return {name: [math.nan if value == "-" else float(value) for value in values] for name, *values in rows}
 
 
-@pytest.mark.parametrize("name", ["dc06", "aa2090_t3_yld2004", "mg_th_cpb06"])
+@pytest.mark.parametrize("name", ["dc06", "aa2090_t3_yld2004", "mg_th_cpb06", "aa2090_t3_yld2000", "aa2090_t3_bbc2008"])
 def test_published(name):
     """Check yield stresses and r-values against those that the file of the library gives."""
     material, compared = dd3.material(name), 0
