@@ -1,8 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Messages on wrong names, missing files and incomplete results: one line, exit code 2; help with examples."""
 
+import os
+import pty
+import select
+import shutil
 import subprocess
 import sys
+import time
 
 import pytest
 from helpers import ROOT, UTILS, call
@@ -49,4 +54,37 @@ def test_completion():
     said = call("completion", "bash")
     assert '"plot force "*) words="--component --factor' in said and '"report "*)' in said
     assert '"plot "*) words="force increments point sheet"' in said and "complete -o filenames -F _dd3 dd3" in said
-    assert call("completion", "zsh").startswith("#compdef dd3\n")
+    for words, found in (("plot fo", "force"), ("identify x --har", "--hardening"), ("ide", "identify")):
+        line = f"COMP_WORDS=(dd3 {words}); COMP_CWORD={len(words.split())}; _dd3; echo ${{COMPREPLY[@]}}"
+        assert subprocess.check_output(["bash", "-c", said + line], text=True).split() == [found]
+
+
+@pytest.mark.skipif(not shutil.which("zsh"), reason="zsh is not installed")
+def test_completion_in_zsh(tmp_path):
+    """Check the script in a zsh at a terminal: the first completion, commands, options and files."""
+    (tmp_path / "_dd3").write_text(call("completion", "zsh"))
+    (tmp_path / ".zshrc").write_text("fpath+=~\nautoload -U compinit; compinit -u\nPS1='ready>'\n")
+    (tmp_path / "carrier.step").write_text("")
+    environment = {**os.environ, "HOME": str(tmp_path), "ZDOTDIR": str(tmp_path), "TERM": "dumb"}
+    terminal, own = pty.openpty()
+    with subprocess.Popen(["zsh", "-i"], cwd=tmp_path, env=environment, stdin=own, stdout=own, stderr=own,
+                          start_new_session=True) as shell:
+        try:
+            shows(terminal, "ready>")
+            for typed, found in (("dd3 ident", "dd3 identify"), ("dd3 plot fo", "dd3 plot force"),
+                                 ("dd3 identify x --har", "dd3 identify x --hardening"),
+                                 ("dd3 part ca", "dd3 part carrier.step")):
+                os.write(terminal, typed.encode() + b"\t")
+                shows(terminal, found)
+                os.write(terminal, b"\x15")  # removes the line
+        finally:
+            shell.kill()
+
+
+def shows(terminal, text, seconds=20):
+    """Read what a terminal shows until a text appears."""
+    said, end = "", time.monotonic() + seconds
+    while text not in said:
+        ready, _, _ = select.select([terminal], [], [], max(0, end - time.monotonic()))
+        assert ready, f"{text!r} is not shown, but {said!r}"
+        said += os.read(terminal, 4096).decode(errors="replace")

@@ -18,7 +18,7 @@ from dd3.command import ANY, COMMANDS, new_parser
 
 SCRIPT = """_dd3() {{
   local word=${{COMP_WORDS[COMP_CWORD]}} words= files=yes
-  case "${{COMP_WORDS[*]:1:COMP_CWORD-1}} " in
+  case "${{COMP_WORDS[*]:1:$((COMP_CWORD - 1))}} " in
 {cases}
   esac
   COMPREPLY=($(compgen -W "$words" -- "$word"))
@@ -26,7 +26,8 @@ SCRIPT = """_dd3() {{
 }}
 complete -o filenames -F _dd3 dd3
 """
-ZSH = "#compdef dd3\nautoload -U +X bashcompinit && bashcompinit\n"
+# zsh reads the script at the first completion, which the last line makes.
+ZSH = "#compdef dd3\nautoload -U +X bashcompinit && bashcompinit\n", "_bash_complete -o filenames -F _dd3\n"
 
 
 def options_of(target: str) -> list[str]:
@@ -58,7 +59,8 @@ def script(shell: str) -> str:
     """Return the script of a shell, bash or zsh."""
     rows = [f'    "{before}"*) words="{" ".join(words)}"{"" if files else " files="} ;;'
             for before, words, files in cases(COMMANDS)]
-    return (ZSH if shell == "zsh" else "") + SCRIPT.format(cases="\n".join(rows))
+    first, last = ZSH if shell == "zsh" else ("", "")
+    return first + SCRIPT.format(cases="\n".join(rows)) + last
 
 
 def main(words: Sequence[str] | None = None) -> None:
