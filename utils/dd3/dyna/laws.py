@@ -49,10 +49,10 @@ AXES = {36: ("AOPT C P VLCID unused PB NLP HTB", "unused1 unused2 unused3 A1 A2 
         122: ("AOPT", "unused1 unused2 unused3 A1 A2 A3", "V1 V2 V3 D1 D2 D3 BETA"),
         133: ("AOPT OFFANG P4 HTFLAG HTA HTB HTC HTD", "unused1 unused2 unused3 A1 A2 A3", "V1 V2 V3 D1 D2 D3 USRFAIL"),
         226: (ROWS[226][2], "XP YP ZP A1 A2 A3", "V1 V2 V3 D1 D2 D3 BETA")}
-RATES = "the flow stress does not depend on the strain rate here"
+RATES = "this dependence on the strain rate is not available"
 TOTAL = "VP = 0 takes the rate of the total strain, the laws here that of the plastic strain: VP = 1 is taken over"
-ADDED = ("with VP = 1 and SIGY the rate adds SIGY (rate/C)^(1/P) to the curve, the law here multiplies it: SIGY = 0 with "
-         "one curve is taken over")
+ADDED = ("with VP = 1 and SIGY the rate adds SIGY (rate/C)^(1/P) to the curve, the law here multiplies it: SIGY = 0 "
+         "with one curve is taken over")
 FAILURE = "failure is not available"
 HEAT = "temperatures and heat treatment are not available"
 METAL = 5e-10, 2.5e-8  # densities, t/mm3
