@@ -195,6 +195,24 @@ def test_blanks():
     assert re.findall(r"contact = (\w+)", deck) == ["z_max", "z_min"] and "element = solid_shell" in deck
 
 
+def test_rates():
+    """Check the laws of the strain rate that are the same here, in the units of the deck, with the times of phases, and
+    that others are left out with their reason."""
+    elastic, other = (1, "7.8E-9", "2.1E5", 0.3), (1, "7.8E-6", 210.0, 0.3)
+    for card, hardening, rate in (
+            (["*MAT_024", row(*elastic), row(40.0, 5.0, 10, "", 1.0)], "table 0:", "cowper_symonds C=40 p=5"),
+            (["*MAT_098", row(*other, 1.0), row(0.3, 0.5, 0.4, 0.02, "", "", "", 1e-6)], "ludwik Y0=300 K=500 n=0.4",
+             "johnson_cook C=0.02 reference=0.001"),
+            (["*MAT_024", row(*elastic), row(40.0, 5.0, 10)], "table 0:", ""),
+            (["*MAT_024", row(*elastic, 200.0), row(40.0, 5.0, 10, "", 1.0)], "table 0:", ""),
+            (["*MAT_SIMPLIFIED_JOHNSON_COOK", row(*other), row(0.3, 0.5, 0.4, 0.02)], "ludwik Y0=300", "")):
+        found, deck = imported(with_material(*card))
+        assert f"  hardening = {hardening}" in deck and found.law.rate == rate, (card, found.law)
+        assert (f"  rate = {rate}\n" in deck) == bool(rate)
+        assert deck.count("*PHASE") == deck.count("  duration = ") or not rate
+        assert any("C = " in str(item) and "VP = " in str(item) for item in found.left_out) != bool(rate)
+
+
 def test_further_cards():
     """Check tables, parts that follow another, draw-beads, and what is left out or refused for its axes or places."""
     text = with_material("*MAT_024", row(1, "7.8E-9", "2.1E5", 0.3), row("", "", 50), "*DEFINE_TABLE", row(50), row(0.1),

@@ -71,6 +71,13 @@ class Row:
         word = self.word(name)
         return float(plain(word, self.values, self.place)) if word else default
 
+    def peek(self, name: str) -> float:
+        """Return the number of a field, which stays unread."""
+        before = set(self.entry.read)
+        value = self.number(name)
+        self.entry.read.intersection_update(before)
+        return value
+
     def label(self, name: str, default: int = 0) -> int:
         """Return the whole number in a field."""
         value = self.number(name, default)

@@ -25,7 +25,7 @@ from dd3.dyna.blank import Blank, blank_of, with_sets
 from dd3.dyna.deck import Deck, Drive
 from dd3.dyna.laws import UNITS, Law, Units, law_of, number_of, units_of, use_rigid
 from dd3.dyna.mesh import Part
-from dd3.dyna.phases import EARTH, Names, Phases, numbers
+from dd3.dyna.phases import AT_ONCE, EARTH, Names, Phases, numbers
 from dd3.dyna.process import Stage, stages
 from dd3.errors import Problem, run
 from dd3.mesh import set_name, write_inp
@@ -260,7 +260,8 @@ class Import:
                  f"  young = {self.law.young:g}", f"  poisson = {self.law.poisson:g}",
                  f"  yield = {self.law.criterion}", f"  hardening = {self.law.hardening}",
                  *(f"  backstress = {law}" for law in self.law.backstresses),
-                 *([f"  modulus = {self.law.modulus}"] if self.law.modulus else [])]
+                 *([f"  modulus = {self.law.modulus}"] if self.law.modulus else []),
+                 *([f"  rate = {self.law.rate}"] if self.law.rate else [])]
         if self.law.density:
             lines.append(f"  density = {self.law.density:.6g}")
         if self.law.rolling:
@@ -325,10 +326,12 @@ class Import:
     def phase_lines(self) -> list[str]:
         """Return the phases."""
         phases = Phases(Names([tool.name for tool in self.tools], self.tool_points,
-                              lambda number: len(self.members(number)), self.blank.size, self.units, self.notes))
+                              lambda number: len(self.members(number)), self.blank.size, self.units, self.notes,
+                              bool(self.law.rate)))
         phases.add(self.stages)
         if self.deck.springback:
-            phases.lines += ["# *INTERFACE_SPRINGBACK.", "*PHASE springback", "  unload = on", ""]
+            phases.lines += ["# *INTERFACE_SPRINGBACK.", "*PHASE springback", "  unload = on",
+                             *phases.duration(AT_ONCE), ""]
         return phases.lines
 
     def tool_points(self, number: int) -> tuple[np.ndarray, np.ndarray]:

@@ -53,6 +53,7 @@ class Law:
     rolling: tuple[float, ...] | None = None
     backstresses: list[str] = field(default_factory=list)
     modulus: str = ""
+    rate: str = ""
     density: float = 0.0
     notes: list[str] = field(default_factory=list)
 
@@ -103,6 +104,15 @@ def by_curve(deck: Deck, number: int, units: Units, law: Law, place: str) -> str
     if strain[0] > 0:
         strain, stress = np.append(0.0, strain), np.append(stress[0], stress)
     return "table " + " ".join(f"{p:.6g}:{y:.6g}" for p, y in zip(strain, stress))
+
+
+def cowper_symonds(row: Row, units: Units) -> str:
+    """Return the law of the rate by C and P; empty without them."""
+    rate, exponent = row.peek("C"), row.peek("P")
+    if rate <= 0 or exponent < 1:
+        return ""
+    row.numbers("C P VP")
+    return f"cowper_symonds C={rate / units.time:.8g} p={exponent:.8g}"
 
 
 def first_strain(start: float, factor: float, exponent: float, young: float) -> float:

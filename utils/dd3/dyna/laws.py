@@ -13,6 +13,7 @@ from dd3.dyna.hardening import (
     Units,
     by_curve,
     chaboche,
+    cowper_symonds,
     first_strain,
     linear,
     positive,
@@ -26,8 +27,8 @@ from dd3.errors import Problem
 NAMES = {"RIGID": 20, "PIECEWISE_LINEAR_PLASTICITY": 24, "3-PARAMETER_BARLAT": 36, "HILL_3R": 122,
          "TRANSVERSELY_ANISOTROPIC_ELASTIC_PLASTIC": 37, "BARLAT_YLD2000": 133, "PLASTIC_KINEMATIC": 3,
          "POWER_LAW_PLASTICITY": 18, "KINEMATIC_HARDENING_TRANSVERSELY_ANISOTROPIC": 125,
-         "KINEMATIC_HARDENING_BARLAT89": 226}
-READ = "003, 018, 024, 036, 037, 122, 125, 133, 226"
+         "KINEMATIC_HARDENING_BARLAT89": 226, "SIMPLIFIED_JOHNSON_COOK": 98}
+READ = "003, 018, 024, 036, 037, 098, 122, 125, 133, 226"
 # Units by Young's modulus of a metal: its range, the factors on lengths and on stresses, mm and MPa here.
 UNITS = {"mm MPa": (3e4, 4.5e5, 1.0, 1.0), "mm GPa": (30.0, 450.0, 1.0, 1e3), "m Pa": (3e10, 4.5e11, 1e3, 1e-6)}
 ROWS = {3: ("MID RO E PR SIGY ETAN BETA", "SRC SRP FS VP"),
@@ -37,6 +38,7 @@ ROWS = {3: ("MID RO E PR SIGY ETAN BETA", "SRC SRP FS VP"),
              "EPS1 EPS2 EPS3 EPS4 EPS5 EPS6 EPS7 EPS8", "ES1 ES2 ES3 ES4 ES5 ES6 ES7 ES8"),
         36: ("MID RO E PR HR P1 P2 ITER", "M R00 R45 R90 LCID E0 SPI P3"),
         37: ("MID RO E PR SIGY ETAN R HLCID", "unused1 unused2 unused3 ICFLD unused5 STRAINLT"),
+        98: ("MID RO E PR VP", "A B N C PSFAIL SIGMAX SIGSAT EPSO"),
         122: ("MID RO E PR HR P1 P2", "R00 R45 R90 LCID E0"),
         125: ("MID RO E PR R HLCID OPT", "CB Y SC K RSAT SB H SC2", "EA COE IOPT C1 C2"),
         133: ("MID RO E PR FIT BETA ITER ISCALE", "K E0 N C P HARD A"),
@@ -47,7 +49,10 @@ AXES = {36: ("AOPT C P VLCID unused PB NLP HTB", "unused1 unused2 unused3 A1 A2 
         122: ("AOPT", "unused1 unused2 unused3 A1 A2 A3", "V1 V2 V3 D1 D2 D3 BETA"),
         133: ("AOPT OFFANG P4 HTFLAG HTA HTB HTC HTD", "unused1 unused2 unused3 A1 A2 A3", "V1 V2 V3 D1 D2 D3 USRFAIL"),
         226: (ROWS[226][2], "XP YP ZP A1 A2 A3", "V1 V2 V3 D1 D2 D3 BETA")}
-RATES = "the flow stress does not depend on the strain rate here"
+RATES = "this dependence on the strain rate is not available"
+TOTAL = "VP = 0 takes the rate of the total strain, the laws here that of the plastic strain: VP = 1 is taken over"
+ADDED = ("with VP = 1 and SIGY the rate adds SIGY (rate/C)^(1/P) to the curve, the law here multiplies it: SIGY = 0 "
+         "with one curve is taken over")
 FAILURE = "failure is not available"
 HEAT = "temperatures and heat treatment are not available"
 METAL = 5e-10, 2.5e-8  # densities, t/mm3
@@ -85,7 +90,7 @@ def law_of(deck: Deck, card: Card, units: Units, axes: np.ndarray) -> Law:
     """Return the laws of a material; `axes` are the first edge and the normal of the blank's first element."""
     number = number_of(card)
     readers: dict[int, Callable[[Deck, Card, Units, Law], int]] = {
-        3: bilinear, 18: power_law, 24: piecewise, 36: barlat_lian, 37: transverse, 122: hill,
+        3: bilinear, 18: power_law, 24: piecewise, 36: barlat_lian, 37: transverse, 98: johnson_cook, 122: hill,
         125: two_surfaces, 133: yld2000, 226: two_surfaces_barlat}
     if number not in readers:
         raise Problem(f"{card.place}: error: the material {card.keyword} of the blank is not read; expected *MAT_ "
@@ -155,11 +160,16 @@ def power_law(deck: Deck, card: Card, units: Units, law: Law) -> int:
 
 
 def piecewise(deck: Deck, card: Card, units: Units, law: Law) -> int:
-    """*MAT_024: a curve, eight points, or yield stress and tangent modulus."""
+    """*MAT_024: a curve, eight points, or yield stress and tangent modulus; with VP = 1 and a curve alone the factor of
+    Cowper and Symonds."""
     row, second, strains, stresses = (row_of(card, i) for i in range(4))
     row.leave(FAILURE, "FAIL TDEL")
-    second.leave(RATES, "C P LCSR VP RFILTF")
     curve = second.label("LCSS")
+    viscoplastic = second.peek("VP") == 1
+    if viscoplastic and curve and curve not in deck.curves.tables and row.peek("SIGY") <= 0:
+        law.rate = cowper_symonds(second, units)
+    second.leave(ADDED if viscoplastic else TOTAL, "C P")
+    second.leave(RATES, "LCSR VP RFILTF")
     at = [(p, y) for k in range(1, 9) if (y := stresses.number(f"ES{k}"))
           for p in (strains.number(f"EPS{k}"),)] if not curve else []
     if curve:
@@ -172,6 +182,20 @@ def piecewise(deck: Deck, card: Card, units: Units, law: Law) -> int:
         law.hardening = "table " + " ".join(f"{p:.6g}:{y * units.stress:.6g}" for p, y in sorted(at))
     else:
         law.hardening = linear(units, law, row.number("SIGY"), row.number("ETAN"), row.place)
+    return 0
+
+
+def johnson_cook(deck: Deck, card: Card, units: Units, law: Law) -> int:
+    """*MAT_098: A + B p^n, with VP = 1 times 1 + C ln(rate/EPSO)."""
+    row, second = row_of(card, 0), row_of(card, 1)
+    start, factor = positive(second.number("A"), "A", second.place), positive(second.number("B"), "B", second.place)
+    exponent = positive(second.number("N"), "N", second.place)
+    law.hardening = f"ludwik Y0={start * units.stress:.8g} K={factor * units.stress:.8g} n={exponent:.8g}"
+    if row.number("VP") == 1 and second.peek("C") > 0 and second.peek("EPSO") > 0:
+        law.rate = f"johnson_cook C={second.number('C'):.8g} reference={second.number('EPSO') / units.time:.8g}"
+    second.leave(TOTAL, "C EPSO")
+    second.leave(FAILURE, "PSFAIL")
+    second.leave("the flow stress has no upper limit here", "SIGMAX SIGSAT")
     return 0
 
 

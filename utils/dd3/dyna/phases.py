@@ -9,6 +9,7 @@ from dd3.dyna.laws import Units
 from dd3.dyna.process import History, Stage, divided
 
 TRIAL = 0.5, 0.05  # trial increment of a tool, mm, at most this part of its displacement
+AT_ONCE = 1.0  # time of what the deck does at once, s: slow
 LITTLE = 1e-3  # of a force that ends at 0, where the phase has no table
 EARTH = 9.81e3  # mm/s2
 
@@ -29,6 +30,7 @@ class Names:
     size: float
     units: Units
     notes: list[str]
+    timed: bool = False  # whether a law of the strain rate needs the time of the phases
 
 
 class Phases:
@@ -87,7 +89,11 @@ class Phases:
         if lines:
             self.head("press" if steps else "gravity" if any("gravity" in line for line in lines) else "load",
                       f"At {stage.begins:g}, before tools move.")
-            self.lines += ["  control = load", "  trial = 0.1", *lines, ""]
+            self.lines += ["  control = load", "  trial = 0.1", *self.duration(AT_ONCE), *lines, ""]
+
+    def duration(self, time: float) -> list[str]:
+        """Return the line of a time, s, if it is needed."""
+        return [f"  duration = {time:.6g}"] if self.names.timed else []
 
     def head(self, kind: str, comment: str) -> None:
         """Begin a phase."""
@@ -109,7 +115,7 @@ class Phases:
             "load" if any("load =" in line for line in lines) else "gravity")
         self.head(kind, f"From {stage.begins:g} to {stage.ends:g}.")
         self.lines += self.motion_lines(stage) if stage.moving else ["  control = load", "  trial = 0.1"]
-        self.lines += [*lines, ""]
+        self.lines += [*self.duration((stage.ends - stage.begins) * self.names.units.time), *lines, ""]
 
     def force_lines(self, stage: Stage) -> list[str]:
         """Return the lines with the forces on tools that change, and their table."""
