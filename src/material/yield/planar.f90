@@ -178,7 +178,8 @@ contains
     f%value = f%value + weight*(power(1) + power(2))
     f%first(1:5) = f%first(1:5) + f_u*u%first + f_v*v%first
     do j = 1, 5
-      f%second(1:5, j) = f%second(1:5, j) + ((same - over_u)*u%first(j) + mixed*v%first(j))*u%first &
+      f%second(1:5, j) = f%second(1:5, j) &
+          + ((same - over_u)*u%first(j) + mixed*v%first(j))*u%first &
           + ((same - over_v)*v%first(j) + mixed*u%first(j))*v%first &
           + over_u*u%square(:, j) + over_v*v%square(:, j)
     end do

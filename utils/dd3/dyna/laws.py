@@ -349,20 +349,23 @@ def yld2000(deck: Deck, card: Card, units: Units, law: Law) -> int:
 
 def measured2000(card: Card, at: int, exponent: float, law: Law) -> int:
     """Take Hill's criterion in place of Yld2000-2d by measured values; return the number of the last row read."""
-    third, fourth = card.row(at, "SIG00 SIG45 SIG90 R00 R45 R90"), card.optional(at + 1, "SIGXX SIGYY SIGXY DXX DYY DXY")
+    third = card.row(at, "SIG00 SIG45 SIG90 R00 R45 R90")
+    fourth = card.optional(at + 1, "SIGXX SIGYY SIGXY DXX DYY DXY")
     r, stress = r_values(third), third.numbers("SIG00 SIG45 SIG90")
     law.criterion = hill48(r)
     command = f"dd3 identify blank --criterion yld2000 --fix m={exponent:g} --r " \
         + " ".join(f"{angle}:{value:.4g}" for angle, value in zip((0, 45, 90), r))
     if all(value > 0 for value in stress):
-        command += " --stress " + " ".join(f"{angle}:{value / stress[0]:.4g}" for angle, value in zip((0, 45, 90), stress))
+        command += " --stress " + " ".join(f"{angle}:{value / stress[0]:.4g}"
+                                           for angle, value in zip((0, 45, 90), stress))
         both, across = fourth.number("SIGXX"), fourth.number("SIGYY")
         if both > 0 and both == across and not fourth.number("SIGXY"):
             command += f" --biaxial-stress {both / stress[0]:.4g}"
             if fourth.number("DXX"):
                 command += f" --biaxial-r {fourth.number('DYY') / fourth.number('DXX'):.4g}"
     fourth.leave("biaxial tension does not enter hill48")
-    law.notes.append(f"yield: hill48 with the r-values, in place of Yld2000-2d by the measured values; nearer: {command}")
+    law.notes.append("yield: hill48 with the r-values, in place of Yld2000-2d by the measured values; nearer: "
+                     + command)
     return at + 1
 
 
