@@ -132,7 +132,8 @@ def test_direction_that_is_no_axis(program, tmp_path):
                    for name, at in (("a1", [0.5, 0.5, 0]), ("a2", [0.5, 9.5, 0]), ("a3", [199.5, 5, 0])))
     text += "".join(support("locator", name, at, direction, "pin = true") for name, at, direction in (
         ("b1", [0, 5, 0], [0, 1, 0]), ("b2", [200, 5, 0], [0, 1, 0]), ("c1", [0, 5, 0], [1, 0, 0])))
-    (tmp_path / "fixture.toml").write_text(FIXTURE.format(first="") + text + support("clamp", "d1", [100, 5, 0], [0, 1, -1]))
+    text += support("clamp", "d1", [100, 5, 0], [0, 1, -1])
+    (tmp_path / "fixture.toml").write_text(FIXTURE.format(first="") + text)
     run(program, tmp_path / "part.dat")
     said = call("deviation", tmp_path / "part.out", "--fixture", tmp_path / "fixture.toml", "--deck",
                 tmp_path / "clamped.dat", expect=2)

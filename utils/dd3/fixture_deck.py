@@ -25,8 +25,8 @@ TRIAL = 0.25  # of a phase
 def write_deck(run: Path, fixture: Fixture, path: Path) -> None:
     """Write the input file."""
     if fixture.alignment != LOCATORS:
-        raise Problem(f"{fixture.path}: error: the alignment is \"{fixture.alignment}\"; expected by = \"locators\", on "
-                      "which the part lies in the fixture")
+        raise Problem(f"{fixture.path}: error: the alignment is \"{fixture.alignment}\"; expected by = \"locators\", "
+                      "on which the part lies in the fixture")
     sheet = Sheet(run)
     found = Comparison(fixture, sheet, sheet.last)
     found.align()
@@ -66,7 +66,8 @@ def materials(job: dict[str, Any], fixture: Fixture) -> list[str]:
         given = [entry for entry in block["entries"] if not entry["default"]]
         for entry in given:
             folder = Path(entry["at"]["file"]).resolve().parent
-            text = re.sub(r'\bfile\s*=\s*"?([^"\s]+)"?', lambda name, at=folder: f'file = "{at / name[1]}"', entry["text"])
+            text = re.sub(r'\bfile\s*=\s*"?([^"\s]+)"?', lambda name, at=folder: f'file = "{at / name[1]}"',
+                          entry["text"])
             lines.append(f"  {entry['key']} = {text}")
         if fixture.gravity is not None and "density" not in [entry["key"] for entry in given]:
             if fixture.density is None:
@@ -82,8 +83,8 @@ def place_of(found: Comparison, number: int) -> tuple[int, str, float]:
     axis = int(np.abs(support.direction).argmax())
     if abs(support.direction[axis]) < ALONG:
         raise Problem(f"{found.fixture.path}: error: the direction of '{support.name}' is {numbers(support.direction)}; "
-                      "nodes are held along x, y or z only: expected such a direction, or a nominal shape turned so that "
-                      "it is one")
+                      "nodes are held along x, y or z only: expected such a direction, or a nominal shape turned so "
+                      "that it is one")
     part = found.part
     points = found.motion.of(part.points)
     node = int(np.linalg.norm(points - found.at[number], axis=1).argmin())
