@@ -13,10 +13,11 @@ from helpers import call
 from vtk.util.numpy_support import vtk_to_numpy
 
 from dd3.bound import bound_nodes, closed_skin
-from dd3.compensate import conforming, continued, lower_face
+from dd3.compensate import lower_face
 from dd3.fields import Fields
 from dd3.forming_limit import strains_of
 from dd3.mesh import read_run
+from dd3.nominal import conforming, continued
 from dd3.outline import rim_on
 from dd3.plot import levels
 from dd3.section import Section

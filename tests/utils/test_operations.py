@@ -15,7 +15,6 @@ import dd3
 from dd3.compensate import (
     aligned,
     along_sheet,
-    continued,
     divisions,
     moved_surface,
     nodes_of,
@@ -24,6 +23,7 @@ from dd3.compensate import (
 )
 from dd3.curve import read_curves
 from dd3.gmsh_session import session
+from dd3.nominal import continued
 from dd3.outline import Outline, Rim, excess, moved
 from dd3.tools.surface import read_patches, write
 

@@ -7,10 +7,10 @@
 
 The file names the nominal shape, the alignment, the places to measure at and the tolerances; docs/measuring.md
 explains its keys. The deviation is the distance of the sheet from the nominal shape along the normals of this shape,
-positive on the side to which the measured face looks. The results are in RUN/deviation: map.png and map.csv, points.csv,
-supports.csv, sections.png and sections.csv. A run in the fixture, of the input file that --deck writes, is compared where
-it lies, and supports.csv has the forces of locators and clamps. --verdict ends with exit code 1 if a deviation is
-outside its tolerance.
+positive on the side to which the measured face looks. The results are in RUN/deviation: map.png and map.csv,
+points.csv, supports.csv, sections.png and sections.csv. A run in the fixture, of the input file that --deck writes, is
+compared where it lies, and supports.csv has the forces of locators and clamps. --verdict ends with exit code 1 if a
+deviation is outside its tolerance.
 """
 
 import sys
@@ -130,9 +130,9 @@ class Comparison:
             if support.pin:
                 found = self.nearest(support.name, support.at)
             elif not abs(away[i]) <= FAR:
-                raise Problem(f"{self.fixture.path}: error: the nominal shape does not meet the line of '{support.name}' "
-                              f"within {FAR:g} mm of its place; expected a place on it, and pin = true for a direction "
-                              "in the sheet")
+                raise Problem(f"{self.fixture.path}: error: the nominal shape does not meet the line of "
+                              f"'{support.name}' within {FAR:g} mm of its place; expected a place on it, and pin = true "
+                              "for a direction in the sheet")
             else:
                 found = support.at + away[i] * support.direction
             places[i] = found
@@ -142,8 +142,9 @@ class Comparison:
         """Return the place of the nominal shape that is nearest to one of the file."""
         _, found = self.nominal.find_closest_cell(place[None], return_closest_point=True)
         if np.linalg.norm(found[0] - place) > FAR:
-            raise Problem(f"{self.fixture.path}: error: '{name}' lies {np.linalg.norm(found[0] - place):.3g} mm off the "
-                          f"nominal shape, nearest {' '.join(f'{x:.4g}' for x in found[0])}; expected at most {FAR:g} mm")
+            raise Problem(f"{self.fixture.path}: error: '{name}' lies {np.linalg.norm(found[0] - place):.3g} mm off "
+                          f"the nominal shape, nearest {' '.join(f'{x:.4g}' for x in found[0])}; expected at most "
+                          f"{FAR:g} mm")
         return np.asarray(found[0], float)
 
     def align(self) -> None:
@@ -162,9 +163,9 @@ class Comparison:
         self.motion, self.determined = aligned(self.motion, equations, fixture.mirror)
         needed = int(free_motions(fixture.mirror).sum())
         if fixture.alignment == LOCATORS and self.determined < needed:
-            raise Problem(f"{fixture.path}: error: the locators determine {self.determined} of {needed} rigid motions of "
-                          "the part; expected places and directions that determine all, such as three on the face and "
-                          "three pins in two holes")
+            raise Problem(f"{fixture.path}: error: the locators determine {self.determined} of {needed} rigid motions "
+                          "of the part; expected places and directions that determine all, such as three on the face "
+                          "and three pins in two holes")
 
     def fit_equations(self, motion: Rigid) -> Equations:
         """Return the distances of the nodes from the nominal shape along its normals."""
@@ -214,8 +215,8 @@ class Comparison:
         return Equations(*(np.concatenate(both) for both in zip(face, held)))
 
     def find_holes(self) -> None:
-        """Find the places of the part, before its motion, that the pins hold: those of the same material as on a nominal
-        sheet; on another surface the nearest ones after a best fit."""
+        """Find the places of the part, before its motion, that the pins hold: those of the same material as on a
+        nominal sheet; on another surface the nearest ones after a best fit."""
         if not self.pins.any():
             return
         if self.wanted is None:
@@ -291,7 +292,7 @@ class Comparison:
 
 
 def of_places(places: np.ndarray, values: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Return values at places in space, interpolated between the three nearest nodes that surround each."""
+    """Return values at places in space, by a linear function through the nearest nodes, in their tangent plane."""
     from scipy.spatial import cKDTree
     found = np.zeros((len(wanted), values.shape[1]))
     for i, place in enumerate(wanted):

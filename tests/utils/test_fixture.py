@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A part in its checking fixture, by the input file that `dd3 deviation --deck` writes: beam theory."""
+
+import subprocess
+
+import numpy as np
+import pandas as pd
+import pytest
+from helpers import call
+
+YOUNG, DENSITY, WIDTH = 2e5, 7.85e-9, 10.0
+INERTIA = WIDTH / 12
+STRIP = """*BLANK strip
+  size = {length} 10 1
+  divisions = 20 2 1
+  element = solid_shell
+  material = m
+*MATERIAL m
+  young = 2e5
+  poisson = 0
+  yield = von_mises
+  hardening = linear Y0=200 H=100
+*BOUNDARY x
+  set = x_min
+  fix = x
+*SET corner
+  near = 0 0 0
+*BOUNDARY yz
+  set = corner
+  fix = y z
+*SET other
+  near = 0 10 0
+*BOUNDARY z
+  set = other
+  fix = z
+"""
+BENT = STRIP.format(length=50) + """*PHASE bend
+  control = load
+  trial = 0.1
+  bend = x_max  0 0 0.5  0 -1 0  8.594
+*PHASE free
+  unload = on
+  free = x_max x z
+"""
+FLAT = STRIP.format(length=200) + """*PHASE wait
+  control = load
+  trial = 1
+  load = x_max 1e-6 0 0
+"""
+FIXTURE = """{first}face = "lower"
+[nominal]
+surface = "plane.bez"
+[alignment]
+by = "locators"
+"""
+
+
+def support(kind, name, at, direction, more=""):
+    """Return a locator or clamp of the file."""
+    return f'[[{kind}]]\nname = "{name}"\nat = {at}\ndirection = {direction}\n{more}\n'
+
+
+def computed(program, folder, deck, text, first=""):
+    """Run a deck, its part in the fixture, and compare; return the tables by name and what is said."""
+    (folder / "part.dat").write_text(deck)
+    (folder / "plane.bez").write_text("patch 1 1\n-1 -1 0\n201 -1 0\n-1 11 0\n201 11 0\n")
+    (folder / "fixture.toml").write_text(FIXTURE.format(first=first) + text)
+    run(program, folder / "part.dat")
+    call("deviation", folder / "part.out", "--fixture", folder / "fixture.toml", "--deck", folder / "clamped.dat")
+    run(program, folder / "clamped.dat")
+    said = call("deviation", folder / "clamped.out", "--fixture", folder / "fixture.toml")
+    tables = {path.stem: pd.read_csv(path) for path in (folder / "clamped.out" / "deviation").glob("*.csv")}
+    return tables, said
+
+
+def run(program, deck):
+    """Run an input file, its results beside it."""
+    done = subprocess.run([program, "--quiet", "--threads", "1", "--output", deck.with_suffix(".out"), deck],
+                          capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
+def test_gravity_on_three_locators(program, tmp_path):
+    """A strip on locators at its ends sags by 5 q L4/(384 E I); each end carries half of the weight."""
+    names = [("a1", [0.5, 0.5, 0]), ("a2", [0.5, 9.5, 0]), ("a3", [199.5, 5, 0])]
+    text = "".join(support("locator", name, at, [0, 0, 1]) for name, at in names)
+    text += support("locator", "b1", [0, 5, 0], [0, 1, 0], "pin = true")
+    text += support("locator", "b2", [200, 5, 0], [0, 1, 0], "pin = true")
+    text += support("locator", "c1", [0, 5, 0], [1, 0, 0], "pin = true")
+    text += f'[[point]]\nname = "m"\nat = [100, 5, 0]\n[gravity]\nacceleration = [0, 0, -9810]\ndensity = {DENSITY}\n'
+    tables, _ = computed(program, tmp_path, FLAT, text)
+    load = DENSITY * 9810 * WIDTH  # N/mm
+    sag = 5 * load * 200**4 / (384 * YOUNG * INERTIA)
+    # The normal of the lower face points downwards.
+    assert tables["points"]["deviation"][0] == pytest.approx(sag, rel=5e-3)
+    force = tables["supports"].set_index("name")["force"]
+    assert np.allclose([force["a1"] + force["a2"], force["a3"]], 100 * load, rtol=1e-3)
+    # The nodes that are held lie 0.5 mm beside the places.
+    assert np.allclose(tables["supports"]["gap"][:3], 0, atol=0.02 * sag)
+
+
+@pytest.mark.parametrize("orders", [(1, 2), (2, 1)])
+def test_arc_clamped_flat(program, tmp_path, orders):
+    """A strip with the curvature k, half of it beside its plane of symmetry, is clamped flat at its end by
+    P = 3 E I k/(2 L), in either order of the two clamps; between it is off by k x2/2 - k (3 L x2 - x3)/(4 L)."""
+    text = support("locator", "a1", [0.5, 0.5, 0], [0, 0, 1]) + support("locator", "a2", [0.5, 9.5, 0], [0, 0, 1])
+    text += support("locator", "b1", [0, 5, 0], [0, 1, 0], "pin = true")
+    for name, y, order in zip(("c1", "c2"), (0.5, 9.5), orders):
+        text += support("clamp", name, [49.5, y, 0], [0, 0, -1], f"order = {order}")
+    text += '[[point]]\nname = "m"\nat = [25, 5, 0]\n'
+    tables, _ = computed(program, tmp_path, BENT, text, 'mirror = ["x"]\n')
+    call("deviation", tmp_path / "part.out", "--fixture", tmp_path / "fixture.toml")
+    free = pd.read_csv(tmp_path / "part.out" / "deviation" / "map.csv").dropna()
+    end = free[free["x"] > 49]
+    curvature = 2 * end["z"].mean() / end["x"].mean()**2
+    force = 1.5 * YOUNG * INERTIA * curvature / 50
+    assert 4e-4 < curvature < 8e-4
+    clamps = tables["supports"].set_index("name").loc[["c1", "c2"]]
+    assert np.allclose(clamps["force"], force / 2, rtol=0.01)
+    held = tables["map"][tables["map"]["x"] > 49.5]["z"]
+    assert np.allclose([held.iloc[0], held.iloc[-1]], 0, atol=1e-9)
+    x = 25.0
+    off = curvature * x**2 / 2 - curvature * (3 * 50 * x**2 - x**3) / (4 * 50)
+    assert tables["points"]["deviation"][0] == pytest.approx(-off, rel=0.02)
+
+
+def test_direction_that_is_no_axis(program, tmp_path):
+    """A clamp in another direction than x, y, z cannot hold a node, and is refused with the reason."""
+    (tmp_path / "part.dat").write_text(FLAT)
+    (tmp_path / "plane.bez").write_text("patch 1 1\n-1 -1 0\n201 -1 0\n-1 11 0\n201 11 0\n")
+    text = "".join(support("locator", name, at, [0, 0, 1])
+                   for name, at in (("a1", [0.5, 0.5, 0]), ("a2", [0.5, 9.5, 0]), ("a3", [199.5, 5, 0])))
+    text += "".join(support("locator", name, at, direction, "pin = true") for name, at, direction in (
+        ("b1", [0, 5, 0], [0, 1, 0]), ("b2", [200, 5, 0], [0, 1, 0]), ("c1", [0, 5, 0], [1, 0, 0])))
+    text += support("clamp", "d1", [100, 5, 0], [0, 1, -1])
+    (tmp_path / "fixture.toml").write_text(FIXTURE.format(first="") + text)
+    run(program, tmp_path / "part.dat")
+    said = call("deviation", tmp_path / "part.out", "--fixture", tmp_path / "fixture.toml", "--deck",
+                tmp_path / "clamped.dat", expect=2)
+    assert "nodes are held along x, y or z only" in said
