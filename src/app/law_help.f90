@@ -93,7 +93,7 @@ contains
   function friction_markdown() result(text)
     character(len=:), allocatable :: text
 
-    text = newline//"# Laws of friction"//newline//table_of(friction_key, friction_laws())
+    text = newline//"# Friction laws"//newline//table_of(friction_key, friction_laws())
   end function friction_markdown
 
   !> Return the manual's reference of all laws in Markdown.

@@ -19,6 +19,10 @@ contains
     case ("power")
       call friction%add_law(name, [law_value_t("p0", 10.0_wp), law_value_t("n", 0.8_wp), &
           law_value_t("p_min", 2.0_wp), law_value_t("p_max", 100.0_wp)])
+    case ("light")
+      ! Down to the pressures at the onset of contact.
+      call friction%add_law("power", [law_value_t("p0", 0.1_wp), law_value_t("n", 0.6_wp), &
+          law_value_t("p_min", 1.0e-4_wp)])
     case ("table")
       call friction%add_law(name, [law_value_t(pair_name, 1.2_wp, 1.0_wp), &
           law_value_t(pair_name, 1.0_wp, 20.0_wp), law_value_t(pair_name, 0.7_wp, 150.0_wp)])
