@@ -211,7 +211,7 @@ contains
         iterations = max(iterations, step%iterations)
         start = step%stress
         if (step%plastic) call evolve_internal_variables(material%laws, before, step%increment, &
-            step%direction, after)
+            0.0_wp, step%stress, step%direction, after)
       end do
       if (step%converged) return
       parts = 2*parts
