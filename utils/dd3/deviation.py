@@ -131,8 +131,8 @@ class Comparison:
                 found = self.nearest(support.name, support.at)
             elif not abs(away[i]) <= FAR:
                 raise Problem(f"{self.fixture.path}: error: the nominal shape does not meet the line of "
-                              f"'{support.name}' within {FAR:g} mm of its place; expected a place on it, and pin = true "
-                              "for a direction in the sheet")
+                              f"'{support.name}' within {FAR:g} mm of its place; expected a place on it, and pin = "
+                              "true for a direction in the sheet")
             else:
                 found = support.at + away[i] * support.direction
             places[i] = found

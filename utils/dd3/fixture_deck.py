@@ -82,9 +82,9 @@ def place_of(found: Comparison, number: int) -> tuple[int, str, float]:
     support: Support = found.supports[number]
     axis = int(np.abs(support.direction).argmax())
     if abs(support.direction[axis]) < ALONG:
-        raise Problem(f"{found.fixture.path}: error: the direction of '{support.name}' is {numbers(support.direction)}; "
-                      "nodes are held along x, y or z only: expected such a direction, or a nominal shape turned so "
-                      "that it is one")
+        raise Problem(f"{found.fixture.path}: error: the direction of '{support.name}' is "
+                      f"{numbers(support.direction)}; nodes are held along x, y or z only: expected such a "
+                      "direction, or a nominal shape turned so that it is one")
     part = found.part
     points = found.motion.of(part.points)
     node = int(np.linalg.norm(points - found.at[number], axis=1).argmin())
