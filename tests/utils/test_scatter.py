@@ -1,9 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Scatter: samples, statistics and surrogates against known values."""
 
+import shutil
+from pathlib import Path
+
 import numpy as np
 import pytest
+from helpers import call
 from scipy import stats
+from test_study import DECK
 
 from dd3.errors import Problem
 from dd3.scatter.sample import correlate, distribution, latin_hypercube
@@ -77,3 +82,16 @@ def test_indices_of_noise_are_refused() -> None:
     assert found.q2 < 0.5
     with pytest.raises(Problem, match="no indices"):
         found.indices()
+
+
+def test_command_continues_with_the_same_table(program) -> None:
+    """Runs of a bar: mean of a stress in closed form, a lost run made again."""
+    Path("bar.dat").write_text(DECK)
+    Path("bar.toml").write_text('deck = "bar.dat"\nruns = 6\nresults = ["stress:11:max"]\n[inputs.strain]\n'
+                                'kind = "uniform"\nlow = 0.005\nhigh = 0.015\n')
+    said = call("scatter", "bar.toml", "--program", program, "--cores", 2)
+    assert "mean 201.4" in said or "mean 201.5" in said  # 201.49 at the strain of 0.01
+    table = [row.split(",")[:3] for row in Path("bar.scatter/results.csv").read_text().splitlines()]
+    shutil.rmtree(next(Path("bar.scatter").glob("strain=*")))
+    assert call("scatter", "bar.toml", "--program", program, "--cores", 2) == said
+    assert [row.split(",")[:3] for row in Path("bar.scatter/results.csv").read_text().splitlines()] == table
