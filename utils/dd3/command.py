@@ -42,6 +42,7 @@ COMMANDS = {
         ANY: ("dd3.study.vary", "vary parameters of this input file, with a table and pictures of results"),
         "combination": ("dd3.study.vary:run_combination", "run one of these combinations in the folder of the study"),
     }),
+    "scatter": ("dd3.scatter.command", "run a sample of scattered inputs: bands, probability of failure, indices"),
     "example": ("dd3.example", "copy an example, or list the examples"),
     "completion": ("dd3.completion", "print a script that completes commands and options in a shell"),
     "info": ("dd3.info", "print what is installed: versions, program, examples, Python packages"),

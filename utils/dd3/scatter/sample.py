@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Samples of scattered inputs: Latin hypercubes with given distributions and rank correlations."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from scipy import stats
+
+from dd3.errors import Problem
+
+
+def distribution(kind: str, mean: float = 0.0, deviation: float = 1.0, low: float = -np.inf, high: float = np.inf
+                 ) -> Any:
+    """Return a distribution of scipy.
+
+    kind: normal or lognormal (mean and standard deviation of the value itself), truncated (the normal distribution of
+    this mean and deviation between low and high), uniform (between low and high).
+    Errors: a deviation, or a range, that is not positive; a lognormal mean that is not positive.
+    """
+    if kind != "uniform" and not deviation > 0:
+        raise Problem(f"{kind}: the standard deviation is positive, not {deviation:g}")
+    if kind in ("truncated", "uniform") and not low < high:
+        raise Problem(f"{kind}: expected low < high, not {low:g} and {high:g}")
+    if kind == "uniform" and not np.isfinite(high - low):
+        raise Problem("uniform: expected finite low and high")
+    if kind == "normal":
+        return stats.norm(mean, deviation)
+    if kind == "truncated":
+        return stats.truncnorm((low - mean) / deviation, (high - mean) / deviation, mean, deviation)
+    if kind == "uniform":
+        return stats.uniform(low, high - low)
+    if kind == "lognormal":
+        if not mean > 0:
+            raise Problem(f"lognormal: the mean is positive, not {mean:g}")
+        variance = np.log1p((deviation / mean)**2)
+        return stats.lognorm(np.sqrt(variance), scale=mean * np.exp(-variance / 2))
+    raise Problem(f"no distribution '{kind}'; there are normal, truncated, uniform and lognormal")
+
+
+def correlate(sample: np.ndarray, ranks: np.ndarray, seed: int = 0) -> np.ndarray:
+    """Return a sample, a row each, its columns reordered so that their rank correlations come near to the matrix given.
+
+    Source: R. L. Iman, W. J. Conover, Commun. Stat. Simul. Comput. 11 (1982) 311-334. The normal scores have the
+    correlation 2 sin(pi r / 6) that belongs to the rank correlation r.
+    Errors: a matrix that is not one of correlations; too few rows.
+    """
+    ranks = np.asarray(ranks, float)
+    count, size = sample.shape
+    if ranks.shape != (size, size) or not np.allclose(ranks, ranks.T) or not np.allclose(np.diag(ranks), 1):
+        raise Problem(f"the correlations are a symmetric matrix of {size} x {size} with 1 on its diagonal")
+    if count <= size:
+        raise Problem(f"{count} rows are too few for correlations of {size} inputs; expected more than {size}")
+    try:
+        wanted = np.linalg.cholesky(2 * np.sin(np.pi * ranks / 6))
+    except np.linalg.LinAlgError:
+        raise Problem("the matrix of correlations is not positive definite: its values contradict each other") from None
+    scores = stats.norm.ppf(np.arange(1, count + 1) / (count + 1))
+    generator = np.random.default_rng(seed)
+    mixed = np.column_stack([generator.permutation(scores) for _ in range(size)])
+    present = np.linalg.cholesky(np.atleast_2d(np.corrcoef(mixed, rowvar=False)))
+    order = (mixed @ np.linalg.solve(present.T, wanted.T)).argsort(axis=0).argsort(axis=0)
+    return np.asarray(np.take_along_axis(np.sort(sample, axis=0), order, axis=0))
+
+
+def latin_hypercube(distributions: Sequence[Any], count: int, ranks: np.ndarray | None = None, seed: int = 0
+                    ) -> np.ndarray:
+    """Return a sample of inputs, (count, inputs): one value in each of `count` parts of equal probability of each.
+
+    ranks: matrix of rank correlations, independent by default.
+    """
+    places = stats.qmc.LatinHypercube(len(distributions), rng=np.random.default_rng(seed)).random(count)
+    if ranks is not None:
+        places = correlate(places, ranks, seed)
+    return np.column_stack([one.ppf(places[:, i]) for i, one in enumerate(distributions)])
