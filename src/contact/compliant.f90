@@ -174,8 +174,9 @@ contains
     if (status == status_gap) then
       tangential = traction%value - dot_product(normal, traction%value)*normal
       status = status_stick
-      if (friction%coefficient <= 0.0_wp .or. norm2(tangential) > limit%value) &
-          status = status_slip
+      if (friction%coefficient <= 0.0_wp .or. norm2(tangential) > limit%value) then
+        status = status_slip
+      end if
     end if
     call coulomb_operator(status, normal, dnormal, sigma_n, traction, limit, force, d, e)
   end subroutine compliant_operator

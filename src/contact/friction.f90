@@ -101,8 +101,9 @@ contains
 
     allocate (problems(0))
     if (same_name(name, "power")) then
-      if (value_of(values, "p_max", huge(1.0_wp)) <= value_of(values, "p_min")) &
-          call add_problem(problems, 0, "p_max is not above p_min", "p_min < p_max")
+      if (value_of(values, "p_max", huge(1.0_wp)) <= value_of(values, "p_min")) then
+        call add_problem(problems, 0, "p_max is not above p_min", "p_min < p_max")
+      end if
       return
     end if
     p = values%abscissa

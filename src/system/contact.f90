@@ -65,8 +65,9 @@ contains
     call choose(system%formulation, model%phase(committed%phase)%mixed)
     associate (contact => system%contact, phase => model%phase(committed%phase))
       contact%outward = outward_normals(model, committed%x)
-      if (any([(model%tool(tool)%friction%varies(), tool=1, model%n_tool)])) &
-          contact%sliding%area = contact_areas(model, committed%x)
+      if (any([(model%tool(tool)%friction%varies(), tool=1, model%n_tool)])) then
+        contact%sliding%area = contact_areas(model, committed%x)
+      end if
       contact%turn_limited = .false.
       contact%search_distance = model%tolerance%tool_search
       touching = .false.

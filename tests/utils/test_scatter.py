@@ -15,8 +15,8 @@ from dd3.scatter.sample import correlate, distribution, latin_hypercube
 from dd3.scatter.statistics import bands, failure
 from dd3.scatter.surrogate import fit
 
-INPUTS = [distribution("normal", 300, 15), distribution("lognormal", 0.2, 0.02), distribution("uniform", low=0, high=1),
-          distribution("truncated", 0.8, 0.02, 0.77, 0.83)]
+INPUTS = [distribution("normal", mean=300, deviation=15), distribution("lognormal", mean=0.2, deviation=0.02), distribution("uniform", low=0, high=1),
+          distribution("truncated", mean=0.8, deviation=0.02, low=0.77, high=0.83)]
 
 
 def test_sample_has_means_deviations_and_strata() -> None:
@@ -42,11 +42,14 @@ def test_contradicting_correlations_and_wrong_distributions_are_refused() -> Non
         distribution("uniform", low=1, high=0)
     with pytest.raises(Problem, match="no distribution"):
         distribution("gauss")
+    for values in ({"mean": 1}, {"mean": 1, "deviation": 2, "high": 3}, {"mean": 1, "deviation": float("inf")}):
+        with pytest.raises(Problem, match="normal: expected finite mean, deviation, not "):
+            distribution("normal", **values)
 
 
 def test_bands_of_a_linear_response() -> None:
     place = np.linspace(1, 2, 5)
-    found = bands(latin_hypercube([distribution("normal")], 100) * place)
+    found = bands(latin_hypercube([distribution("normal", mean=0, deviation=1)], 100) * place)
     assert found.mean == pytest.approx(0, abs=0.02)
     assert found.deviation == pytest.approx(place, rel=0.03)
     assert found.quantiles[2] == pytest.approx(stats.norm.ppf(0.95) * place, rel=0.03)
@@ -55,7 +58,7 @@ def test_bands_of_a_linear_response() -> None:
 def test_failure_with_its_interval() -> None:
     none = failure(np.zeros(30, bool))
     assert (none.part, none.low) == (0, 0) and none.high == pytest.approx(1 - 0.025**(1 / 30))  # closed form
-    some = failure(latin_hypercube([distribution("normal")], 100)[:, 0] > stats.norm.ppf(0.9))
+    some = failure(latin_hypercube([distribution("normal", mean=0, deviation=1)], 100)[:, 0] > stats.norm.ppf(0.9))
     assert some.failed == 10 and some.low < 0.1 < some.high
 
 
@@ -70,14 +73,14 @@ def test_indices_of_ishigami() -> None:
 
 
 def test_indices_of_a_quadratic_of_normal_inputs() -> None:
-    inputs = [distribution("normal", 5, 2), distribution("normal", 0, 1)]
+    inputs = [distribution("normal", mean=5, deviation=2), distribution("normal", mean=0, deviation=1)]
     a, b = (sample := latin_hypercube(inputs, 30)).T
     first, total = fit(sample, inputs, (a - 5) / 2 + 2 * b + (a - 5) / 2 * b).indices()  # variances 1, 4 and 1
     assert first == pytest.approx([1 / 6, 4 / 6]) and total == pytest.approx([2 / 6, 5 / 6])
 
 
 def test_indices_of_noise_are_refused() -> None:
-    inputs = [distribution("normal")] * 3
+    inputs = [distribution("normal", mean=0, deviation=1)] * 3
     found = fit(latin_hypercube(inputs, 40), inputs, np.random.default_rng(3).normal(size=40))
     assert found.q2 < 0.5
     with pytest.raises(Problem, match="no indices"):

@@ -174,7 +174,8 @@ class Comparison:
         chosen = beside <= BORDER * self.part.thickness
         if len(self.fixture.regions):
             low, high = self.fixture.regions[..., 0], self.fixture.regions[..., 1]
-            chosen &= ((places[:, None] >= low) & (places[:, None] <= high)).all(axis=2).any(axis=1)
+            inside = np.all((places[:, None] >= low) & (places[:, None] <= high), axis=2)
+            chosen &= np.any(inside, axis=1)
         return Equations(distance[chosen], normals[chosen], places[chosen], self.weights[chosen])
 
     def along(self, motion: Rigid, places: np.ndarray, directions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -145,9 +145,9 @@ class Table:
     def limits(self) -> tuple[float, float] | None:
         """Return the limits of a tolerance."""
         value = self.values.get("tolerance")
-        pair = [-value, value] if is_number(value) else value
-        if pair is None:
+        if value is None:
             return None
+        pair = [-value, value] if is_number(value) else value
         if len(pair) != 2 or not all(is_number(end) for end in pair) or not pair[0] < pair[1]:
             raise self.problem(f"tolerance is {value!r}; expected a number > 0, or the lower and the upper limit")
         return float(pair[0]), float(pair[1])

@@ -20,6 +20,7 @@ from dd3.sheet import AXES, Sheet
 
 ALONG = 1 - 1e-6  # cosine between a direction and an axis
 TRIAL = 0.25  # of a phase
+FILE = re.compile(r'\bfile\s*=\s*"?([^"\s]+)"?')
 
 
 def write_deck(run: Path, fixture: Fixture, path: Path) -> None:
@@ -56,6 +57,11 @@ def numbers(values: np.ndarray) -> str:
     return " ".join(f"{value + 0.0:.12g}" for value in values)
 
 
+def with_absolute_files(text: str, folder: Path) -> str:
+    """Return the text of an entry with the files in it named from the root."""
+    return FILE.sub(lambda name: f'file = "{folder / name[1]}"', text)
+
+
 def materials(job: dict[str, Any], fixture: Fixture) -> list[str]:
     """Return the blocks of the materials of a run, with the density of the fixture where they have none."""
     lines = []
@@ -66,8 +72,7 @@ def materials(job: dict[str, Any], fixture: Fixture) -> list[str]:
         given = [entry for entry in block["entries"] if not entry["default"]]
         for entry in given:
             folder = Path(entry["at"]["file"]).resolve().parent
-            text = re.sub(r'\bfile\s*=\s*"?([^"\s]+)"?', lambda name, at=folder: f'file = "{at / name[1]}"',
-                          entry["text"])
+            text = with_absolute_files(entry["text"], folder)
             lines.append(f"  {entry['key']} = {text}")
         if fixture.gravity is not None and "density" not in [entry["key"] for entry in given]:
             if fixture.density is None:

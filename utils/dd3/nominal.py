@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from dd3.bound import Bound, rings
 from dd3.errors import Problem
 from dd3.fields import SAME
-from dd3.plot.sheet import Placement, tool_surface
+from dd3.plot.skins import Placement, tool_surface
 from dd3.sheet import Sheet
 from dd3.tools.facet_files import Facets
 from dd3.tools.nagata import estimate_normals, unfolded_patches

@@ -163,8 +163,8 @@ def judge(job: dict[str, Any], waves: float | None, limits: Sequence[Item], spri
     waves: largest height under a holder and in walls, mm. limits, springback: items of `splits` and `sprung`.
     """
     phases = list(ended_phases(job))
-    return [end_of_run(job), *formed(phases, waves), *slides(phases), *holders(phases, waves), *limits, *springback, *supports(phases),
-            *pins(phases)]
+    return [end_of_run(job), *formed(phases, waves), *slides(phases), *holders(phases, waves), *limits, *springback,
+            *supports(phases), *pins(phases)]
 
 
 def summary(items: Sequence[Item]) -> str:

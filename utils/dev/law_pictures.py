@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draw the pictures of docs/laws: one for each yield criterion, hardening law, back-stress law, the chord modulus and laws of
-the strain rate.
+"""Draw the pictures of docs/laws: one for each yield criterion, hardening law, back-stress law, the chord modulus and
+laws of the strain rate.
 
     utils/dev/law_pictures.py --program build/release/dd3imp
     utils/dev/law_pictures.py hill48 swift --program build/release/dd3imp --output /tmp
@@ -9,8 +9,8 @@ the strain rate.
 Materials and paths are those of input_files/laws/<law>.dat; all values come from runs of the program. Criteria: the
 yield surface with its normals, r-values and yield stresses by angle; the broken line is the surface of von Mises.
 Hardening laws: tension as true and as nominal stress, with a dot at the largest force. Back-stresses and laws that
-depend on the strain path: reversals and changes of the path. Chord modulus: tension with unloadings. Strain rate: tension at
-four rates, and with jumps of the rate and relaxation.
+depend on the strain path: reversals and changes of the path. Chord modulus: tension with unloadings. Strain rate:
+tension at four rates, and with jumps of the rate and relaxation.
 """
 
 import argparse

@@ -26,6 +26,8 @@ contains
     case ("table")
       call friction%add_law(name, [law_value_t(pair_name, 1.2_wp, 1.0_wp), &
           law_value_t(pair_name, 1.0_wp, 20.0_wp), law_value_t(pair_name, 0.7_wp, 150.0_wp)])
+    case default
+      if (len(name) > 0) error stop "no such example"
     end select
   end subroutine add_example
 

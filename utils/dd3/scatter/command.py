@@ -51,6 +51,8 @@ def read(path: Path) -> dict[str, Any]:
     if wrong or missing:
         raise Problem(f"{path}: " + (f"no key '{wrong[0]}'" if wrong else f"{missing[0]} is missing")
                       + f"; there are {', '.join(sorted(KEYS))}")
+    if not isinstance(found["runs"], int) or found["runs"] < 2:
+        raise Problem(f"{path}: runs is a number of runs from 2 on, not {found['runs']}")
     for name in found.get("limits", {}):
         if name not in found["results"]:
             raise Problem(f"{path}: the limit of '{name}' belongs to no result")

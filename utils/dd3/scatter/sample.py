@@ -9,33 +9,39 @@ from scipy import stats
 
 from dd3.errors import Problem
 
+# Keys of the distributions.
+NEEDED = {"normal": ("mean", "deviation"), "lognormal": ("mean", "deviation"),
+          "truncated": ("mean", "deviation", "low", "high"), "uniform": ("low", "high")}
 
-def distribution(kind: str, mean: float = 0.0, deviation: float = 1.0, low: float = -np.inf, high: float = np.inf
-                 ) -> Any:
+
+def distribution(kind: str, **values: float) -> Any:
     """Return a distribution of scipy.
 
     kind: normal or lognormal (mean and standard deviation of the value itself), truncated (the normal distribution of
-    this mean and deviation between low and high), uniform (between low and high).
-    Errors: a deviation, or a range, that is not positive; a lognormal mean that is not positive.
+    this mean and deviation between low and high), uniform (between low and high). values: `mean`, `deviation`, `low`
+    and `high`, as the kind needs.
+    Errors: no such kind; other values than it needs; a deviation, or a range, that is not positive; a lognormal mean
+    that is not positive.
     """
-    if kind != "uniform" and not deviation > 0:
+    if kind not in NEEDED:
+        raise Problem(f"no distribution '{kind}'; there are {', '.join(NEEDED)}")
+    if set(values) != set(NEEDED[kind]) or not np.isfinite(list(values.values())).all():
+        raise Problem(f"{kind}: expected finite {', '.join(NEEDED[kind])}, not {', '.join(values) or 'nothing'}")
+    mean, deviation, low, high = (values.get(name, 0.0) for name in ("mean", "deviation", "low", "high"))
+    if "deviation" in values and not deviation > 0:
         raise Problem(f"{kind}: the standard deviation is positive, not {deviation:g}")
-    if kind in ("truncated", "uniform") and not low < high:
+    if "low" in values and not low < high:
         raise Problem(f"{kind}: expected low < high, not {low:g} and {high:g}")
-    if kind == "uniform" and not np.isfinite(high - low):
-        raise Problem("uniform: expected finite low and high")
     if kind == "normal":
         return stats.norm(mean, deviation)
     if kind == "truncated":
         return stats.truncnorm((low - mean) / deviation, (high - mean) / deviation, mean, deviation)
     if kind == "uniform":
         return stats.uniform(low, high - low)
-    if kind == "lognormal":
-        if not mean > 0:
-            raise Problem(f"lognormal: the mean is positive, not {mean:g}")
-        variance = np.log1p((deviation / mean)**2)
-        return stats.lognorm(np.sqrt(variance), scale=mean * np.exp(-variance / 2))
-    raise Problem(f"no distribution '{kind}'; there are normal, truncated, uniform and lognormal")
+    if not mean > 0:
+        raise Problem(f"lognormal: the mean is positive, not {mean:g}")
+    variance = np.log1p((deviation / mean)**2)
+    return stats.lognorm(np.sqrt(variance), scale=mean * np.exp(-variance / 2))
 
 
 def correlate(sample: np.ndarray, ranks: np.ndarray, seed: int = 0) -> np.ndarray:

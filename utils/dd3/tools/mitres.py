@@ -147,7 +147,8 @@ def unfilleted(gmsh: Any, side: list[int], edges: dict[int, float], removed: dic
     beside = {face: {tag for edge in edges_of(gmsh, [face]) for tag in faces_of(gmsh, edge)} for face in removed}
     near = fillets.tolerance_of(gmsh)
     new = taken_out(gmsh, fillets.volume_of(gmsh, side), set(removed))
-    faces = {fillets.face_of(gmsh, old, new, near): old for old in side if old not in removed}
+    faces = {tag: old for old in side if old not in removed
+             if (tag := fillets.face_of(gmsh, old, new, near)) is not None}
     again, others = {}, {}
     for edge in edges_of(gmsh, list(faces)):
         pair = {faces.get(tag) for tag in faces_of(gmsh, edge)}
@@ -159,7 +160,7 @@ def unfilleted(gmsh: Any, side: list[int], edges: dict[int, float], removed: dic
             others[edge] = max(kept)
         else:
             again[edge] = max(radius for face, radius in removed.items() if pair <= beside[face])
-    corners = {}
+    corners: dict[int, float] = {}
     for edge in others:
         for end in gmsh.model.getAdjacencies(1, edge)[1]:
             meeting = [radius for one, radius in again.items() if end in gmsh.model.getAdjacencies(1, one)[1]]

@@ -103,9 +103,10 @@ def bearing(found: Sequence[Pin], pull: np.ndarray, stress: Callable[[float], fl
 def axes_of(found: Sequence[Pin]) -> list[tuple[int, ...]]:
     """Return the axes along which pins hold the blank: the first one both, the second one that across their distance,
     against a turn about the first."""
+    first: list[tuple[int, ...]] = [(0, 1)]
     if len(found) < 2:
-        return [(0, 1)][:len(found)]
-    return [(0, 1), (int(np.abs(found[1].place - found[0].place).argmin()),)]
+        return first[:len(found)]
+    return [*first, (int(np.abs(found[1].place - found[0].place).argmin()),)]
 
 
 def with_pins(tools: "ToolSet", stress: Callable[[float], float], holder: float, options: ToolSettings,

@@ -52,8 +52,9 @@ class ToolSet:
     of their travels; these travels, the height by which the part was moved into the die, the least radius of the die's
     shoulder, that of all faces of punch and die and that of the punch, mm; force of the pad, N, 0 if it is not
     estimated, and whether the pins need so much; what pulls at a floor, and the holes in which pins locate it; the
-    blank, and the areas in plan of the tools over it, mm2; the drawing ratio, the root of the area of the blank over that of the punch in plan, 0 with open
-    ends or no holder; the largest distances of the faces of punch and die from the CAD, mm; lines of the report."""
+    blank, and the areas in plan of the tools over it, mm2; the drawing ratio, the root of the area of the blank over
+    that of the punch in plan, 0 with open ends or no holder; the largest distances of the faces of punch and die from
+    the CAD, mm; lines of the report."""
 
     surfaces: dict[str, Surface] = field(default_factory=dict)
     travel: float = 0.0
