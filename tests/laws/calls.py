@@ -46,15 +46,16 @@ class Umat:
         self.stress, self.tangent, self.state = np.zeros(6), np.zeros((6, 6), order="F"), np.zeros(64)
         self.smaller = 1.0
 
-    def update(self, strain, shears=3):
+    def update(self, strain, shears=3, time=0.0):
         """Integrate stress and state over a strain increment."""
-        strain, n, new = np.array(strain), 3 + shears, ctypes.c_double(1.0)
+        strain, n, new, time = np.array(strain), 3 + shears, ctypes.c_double(1.0), ctypes.c_double(time)
         tangent = np.zeros((n, n), order="F")
         none, unused = None, ctypes.c_double(0.0)
         sizes = [ctypes.byref(ctypes.c_int(value)) for value in (3, shears, n, len(self.state))]
         energies, total = [ctypes.byref(unused)] * 4, pointer(np.zeros(6))
         self.library.umat_(
             pointer(self.stress), pointer(self.state), pointer(tangent), *energies, none, none, none, total,
-            pointer(strain), none, none, none, none, none, none, self.name, *sizes, none, ctypes.byref(ctypes.c_int(0)),
-            none, none, ctypes.byref(new), none, none, none, none, none, none, none, none, none, ctypes.c_int(80))
+            pointer(strain), none, ctypes.byref(time), none, none, none, none, self.name, *sizes, none,
+            ctypes.byref(ctypes.c_int(0)), none, none, ctypes.byref(new), none, none, none, none, none, none, none,
+            none, none, ctypes.c_int(80))
         self.tangent[:n, :n], self.smaller = tangent, new.value

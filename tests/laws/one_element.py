@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 from calls import Material, Umat
-from cases import CASES, SIZE, TWO_SURFACES, deck, displacements
+from cases import CASES, SIZE, TWO_SURFACES, Case, deck, displacements
 
 from dd3.programs import find_program, launch
 from dd3.tables import read_table
@@ -135,7 +135,7 @@ def difference(case, found, expected, normal=True):
 
 
 def check_umat(library, folder):
-    """Check plane strain, a failed step and the names of CalculiX and Abaqus."""
+    """Check plane strain, a failed step, the names of CalculiX and Abaqus, and the time of a law of the strain rate."""
     case = CASES[0]
     solid, plane = (Umat(library, case.material(), folder, name) for name in ("_SHEET", "SHEET"))
     solid.update([0.01, -0.004, 0, 0.002, 0, 0])
@@ -145,6 +145,14 @@ def check_umat(library, folder):
     stress = solid.stress.copy()
     solid.update([99.0, 0, 0, 0, 0, 0])
     assert np.array_equal(solid.stress, stress) and solid.smaller == 0.5
+    rate = ("yield = von_mises", "hardening = perfect Y0=100", "rate = power m=0.1 reference=1")
+    text = Case("rate", rate, (), ()).material().replace("*MATERIAL sheet", "*MATERIAL rate")
+    viscous = Umat(library, text, folder, "RATE")
+    for time in (1e-3, 1e-4):
+        before = viscous.state[0]
+        viscous.update([0, 0, 0, 0.02, 0, 0], time=time)
+        expected = 100 * (1 + (viscous.state[0] - before) / time)**0.1
+        assert abs(np.sqrt(3) * viscous.stress[3] / expected - 1) < 1e-8, (time, viscous.stress[3], expected)
 
 
 def check_threads(library):
