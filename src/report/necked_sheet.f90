@@ -24,9 +24,9 @@ contains
     type(state_t), intent(in) :: state
 
     real(wp) :: thinning
-    integer :: node
+    integer :: element
 
-    call find_thinnest(model, state, node, thinning)
+    call find_thinnest(model, state, element, thinning)
     has_necked = thinning > necked
   end function has_necked
 
@@ -37,30 +37,32 @@ contains
     character(len=:), allocatable :: text
 
     real(wp) :: thinning
-    integer :: node
+    integer :: element
 
     text = ""
-    call find_thinnest(model, state, node, thinning)
+    call find_thinnest(model, state, element, thinning)
     if (thinning > necked) text = "the sheet is thinned by "//to_text(100.0_wp*thinning, 3)// &
-        " % at "//place_of_node(model, state, node)//": it has necked or torn there, and what "// &
-        "follows depends on the length of the elements"
+        " % in element "//to_text(element)//", beside "//place_of_node(model, state, &
+        model%connectivity(1, element))//": it has necked or torn there, and what follows "// &
+        "depends on the length of the elements"
   end function necking_warning
 
-  !> Find the node at which the sheet is thinned most, and the thinning there, over the initial
-  !> thickness; zero without columns of nodes.
-  pure subroutine find_thinnest(model, state, node, thinning)
+  !> Find the element that is thinned most, and its thinning over the initial thickness; zero
+  !> without columns of nodes. A neck is as wide as an element: at its nodes, where the thickness is
+  !> the mean of the elements around, it is hidden in part.
+  pure subroutine find_thinnest(model, state, element, thinning)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
-    integer, intent(out) :: node
+    integer, intent(out) :: element
     real(wp), intent(out) :: thinning
 
-    real(wp) :: start(model%n_node), now(model%n_node), cell(model%n_element)
+    real(wp) :: nodal(model%n_node), start(model%n_element), now(model%n_element)
 
-    call sheet_thickness(model, model%x0, start, cell)
-    call sheet_thickness(model, state%x, now, cell)
+    call sheet_thickness(model, model%x0, nodal, start)
+    call sheet_thickness(model, state%x, nodal, now)
     now = merge(1.0_wp - now/max(start, tiny(1.0_wp)), 0.0_wp, start > 0.0_wp)
-    node = maxloc(now, dim=1)
-    thinning = now(node)
+    element = maxloc(now, dim=1)
+    thinning = now(element)
   end subroutine find_thinnest
 
 end module dd3_report_necked_sheet
