@@ -185,8 +185,9 @@ contains
       row("W125", "curve of a cut beyond the sheet", &
           "A curve of `*TRIM` that bounds what stays goes beyond the border of the sheet, "// &
           "where this stays as it is; or a curve lies beside the sheet and cuts nothing, as "// &
-          "curves of a whole part do beside a quarter of it.", "Curves on the sheet, or a larger blank; "// &
-          "in a quarter of a sheet it is as it should be.")]
+          "curves of a whole part do beside a quarter of it.", &
+          "Curves on the sheet, or a larger blank; in a quarter of a sheet it is as it "// &
+          "should be.")]
   end function run_warnings
 
   !> Return the notes.
