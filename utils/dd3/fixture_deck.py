@@ -20,7 +20,7 @@ from dd3.sheet import AXES, Sheet
 
 ALONG = 1 - 1e-6  # cosine between a direction and an axis
 TRIAL = 0.25  # of a phase
-FILE = re.compile(r'\bfile\s*=\s*"?([^"\s]+)"?')
+FILE = re.compile(r'\bfile\s*=\s*(?:"([^"]+)"|([^"\s]+))')
 
 
 def write_deck(run: Path, fixture: Fixture, path: Path) -> None:
@@ -59,7 +59,7 @@ def numbers(values: np.ndarray) -> str:
 
 def with_absolute_files(text: str, folder: Path) -> str:
     """Return the text of an entry with the files in it named from the root."""
-    return FILE.sub(lambda name: f'file = "{folder / name[1]}"', text)
+    return FILE.sub(lambda name: f'file = "{folder / (name[1] or name[2])}"', text)
 
 
 def materials(job: dict[str, Any], fixture: Fixture) -> list[str]:

@@ -8,6 +8,7 @@ module dd3_material_modulus_table
   use dd3_material_description, only : description_t, problem_t, add_problem, &
       check_strains
   use dd3_material_modulus_law, only : modulus_t
+  use dd3_material_straight, only : straight
   implicit none
   private
   public :: table_t
@@ -76,18 +77,11 @@ contains
     real(wp), intent(in) :: initial
     real(wp), intent(in) :: plastic_strain
 
-    real(wp) :: weight
-    integer :: i
+    real(wp) :: slope
 
     associate (unused => initial)
     end associate
-    i = count(self%strain <= plastic_strain)
-    if (i == 0 .or. i == size(self%strain)) then
-      young_at = self%young(max(i, 1))
-    else
-      weight = (plastic_strain - self%strain(i))/(self%strain(i + 1) - self%strain(i))
-      young_at = (1 - weight)*self%young(i) + weight*self%young(i + 1)
-    end if
+    call straight(self%strain, self%young, plastic_strain, young_at, slope)
   end function young_at
 
 end module dd3_material_modulus_table

@@ -7,6 +7,7 @@ module dd3_material_rate_table
   use dd3_base_text, only : to_text
   use dd3_material_description, only : description_t, problem_t, add_problem, value_of
   use dd3_material_rate_law, only : rate_t
+  use dd3_material_straight, only : straight
   implicit none
   private
   public :: table_t
@@ -94,20 +95,12 @@ contains
     real(wp), intent(in) :: rate
     real(wp), intent(out) :: value, slope
 
-    real(wp) :: here
-    integer :: i
-
-    here = rate
-    if (self%logarithmic) here = log(max(rate, tiny(1.0_wp)))
-    i = count(self%place <= here)
-    slope = 0.0_wp
-    if (i == 0 .or. i == size(self%place)) then
-      value = self%value(max(i, 1))
+    if (.not. self%logarithmic) then
+      call straight(self%place, self%value, rate, value, slope)
       return
     end if
-    slope = (self%value(i + 1) - self%value(i))/(self%place(i + 1) - self%place(i))
-    value = self%value(i) + slope*(here - self%place(i))
-    if (self%logarithmic) slope = slope/rate
+    call straight(self%place, self%value, log(max(rate, tiny(1.0_wp))), value, slope)
+    if (rate > 0.0_wp) slope = slope/rate
   end subroutine factor
 
 end module dd3_material_rate_table

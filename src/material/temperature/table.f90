@@ -6,6 +6,7 @@ module dd3_material_temperature_table
   use dd3_base_parameter, only : law_value_t, row, kind_real, kind_text, pair_name
   use dd3_base_text, only : to_text
   use dd3_material_description, only : description_t, problem_t, add_problem
+  use dd3_material_straight, only : straight
   use dd3_material_temperature_law, only : temperature_t
   implicit none
   private
@@ -74,16 +75,7 @@ contains
     real(wp), intent(in) :: temperature
     real(wp), intent(out) :: value, slope
 
-    integer :: i
-
-    i = count(self%place <= temperature)
-    slope = 0.0_wp
-    if (i == 0 .or. i == size(self%place)) then
-      value = self%value(max(i, 1))
-    else
-      slope = (self%value(i + 1) - self%value(i))/(self%place(i + 1) - self%place(i))
-      value = self%value(i) + slope*(temperature - self%place(i))
-    end if
+    call straight(self%place, self%value, temperature, value, slope)
   end subroutine factor
 
 end module dd3_material_temperature_table

@@ -36,8 +36,7 @@ def bands(results: np.ndarray, levels: tuple[float, ...] = (0.05, 0.5, 0.95)) ->
 
 def failure(failed: np.ndarray, confidence: float = 0.95) -> Failure:
     """Return the probability of failure of runs, True where one failed, with the interval of C. J. Clopper and
-    E. S. Pearson, Biometrika 26 (1934) 404-413. It is that of independent runs: those of a Latin hypercube scatter
-    less, so that the interval is on the safe side."""
+    E. S. Pearson, Biometrika 26 (1934) 404-413. It is that of independent runs; those of a Latin hypercube are not."""
     count, runs = int(np.sum(failed)), len(failed)
     if not runs:
         raise Problem("a probability of failure takes one run or more")

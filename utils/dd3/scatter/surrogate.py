@@ -13,6 +13,7 @@ import numpy as np
 from scipy import special, stats
 
 from dd3.errors import Problem
+from dd3.study.response import least_squares
 
 ENOUGH = 0.8  # Q2 below which indices are refused
 
@@ -66,9 +67,7 @@ def fit(sample: np.ndarray, distributions: Sequence[Any], results: np.ndarray, l
         if len(results) <= len(powers):
             break
         matrix = terms(sample, distributions, powers)
-        coefficients = np.linalg.lstsq(matrix, results, rcond=None)[0]
-        leverage = np.einsum("ij,ji->i", matrix, np.linalg.pinv(matrix))
-        alone = (results - matrix @ coefficients) / np.maximum(1 - leverage, 1e-12)
+        coefficients, alone = least_squares(matrix, results)
         found.append(Surrogate(powers, coefficients, 1 - float(alone @ alone) / total))
     if not found:
         raise Problem(f"no surrogate: {len(results)} runs for {sample.shape[1] + 1} terms; make more runs")

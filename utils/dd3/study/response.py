@@ -64,6 +64,13 @@ def terms_of(parameters: list[Parameter]) -> list[tuple[str, ...]]:
     return found + [(one.name, one.name) for one in parameters if one.numbers is not None and len(one.values) > 2]
 
 
+def least_squares(matrix: np.ndarray, results: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the coefficients of terms, and the errors at results that are left out in turn (Allen 1974)."""
+    coefficients = np.linalg.lstsq(matrix, results, rcond=None)[0]
+    leverage = np.einsum("ij,ji->i", matrix, np.linalg.pinv(matrix))
+    return coefficients, (results - matrix @ coefficients) / np.maximum(1 - leverage, 1e-12)
+
+
 def fit(parameters: Sequence[Parameter], cases: list[dict[str, str]], results: Sequence[float]) -> Surface:
     """Return the polynomial through results at cases."""
     varied = [one for one in parameters if len(one.values) > 1]
@@ -72,10 +79,8 @@ def fit(parameters: Sequence[Parameter], cases: list[dict[str, str]], results: S
     values = np.array(results)
     if len(values) <= len(terms):
         raise Problem(f"--surface has {len(terms)} terms and takes more results than that; there are {len(values)}")
-    coefficients = np.linalg.lstsq(matrix, values, rcond=None)[0]
+    coefficients, alone = least_squares(matrix, values)
     left = values - matrix @ coefficients
-    leverage = np.einsum("ij,ji->i", matrix, np.linalg.pinv(matrix))
-    alone = left / np.maximum(1 - leverage, 1e-12)
     total = float(((values - values.mean())**2).sum())
     if total == 0.0:
         return Surface(varied, terms, coefficients, 1.0, 1.0)
