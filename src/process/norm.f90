@@ -157,6 +157,8 @@ contains
       force = agreed(norm_over_ranks(step) + residual%norm)
       scale = agreed(max(norm_over_ranks(norm2(trial%contact%lambda)), &
           norm2(trial%sheet%internal_force)))
+      if (allocated(trial%sheet%fading_force)) scale = max(scale, &
+          phase%fading(trial%progress)*norm2(trial%sheet%fading_force))
       if (force >= convergence_tolerance(phase, trial)*scale) then
         round_off = attainable_residual(system%column_square, trial%x)
         scale = max(scale, round_off/convergence_tolerance(phase, trial))

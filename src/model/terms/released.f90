@@ -148,6 +148,9 @@ contains
 
     force = force + step*(model%phase(committed%phase)%fading_rate(committed%progress) &
         *carried(self, model, committed))
+    if (allocated(committed%sheet%fading_force)) force = force - step*( &
+        model%phase(committed%phase)%fading_rate(committed%progress) &
+        *committed%sheet%fading_force)
   end subroutine add_rate
 
   !> Set what is left in a trial state.
