@@ -139,7 +139,7 @@ contains
       row("W116", "sheet that snaps in a release", &
           "Increments failed without viscous forces, which took more than 0.1 % of the elastic "// &
           "energy released: the sheet jumped from one equilibrium to another.", &
-          "Compare with tools withdrawn in another order by `move`; a smaller `trial`."), &
+          "Compare with `unload = at_once`, or tools withdrawn in another order by `move`."), &
       row("W117", "elements divided too late", &
           "An increment was made again on finer meshes as often as allowed and still bends the "// &
           "sheet by more than 1.3 times `adaptive_angle` over elements that could be divided. "// &

@@ -101,7 +101,10 @@ contains
     fades = allocated(self%fading_stress)
     call visitor%reals("internal_force", size(self%internal_force), self%internal_force)
     call visitor%one_logical("fades", fades)
-    if (fades .and. .not. allocated(self%fading_stress)) call self%begin_fading()
+    if (fades .and. .not. allocated(self%fading_stress)) then
+      allocate (self%fading_stress, mold=self%stress)
+      allocate (self%fading_force, mold=self%internal_force)
+    end if
     associate (n => size(self%plastic, 2), n_point => size(self%plastic, 1), &
         n_variable => size(self%internal_variables, 1))
       call visitor%reals_of_items(of_elements, "stress", 6*n_point, n, self%stress)

@@ -77,11 +77,8 @@ contains
       if (phase%until%kind == until_force) start%until_from_below = &
           abs(until_value(phase, state)) <= phase%until%value
       call release_contacts(model, phase, state, force, released_by, lost)
-      lost = lost .or. number == 1
-      if (phase%unloaded .and. .not. any(phase%withdrawn) .and. lost) then
-        call state%sheet%begin_fading()
-        released_by = 0
-        force = loads_without(model, released_by, state)
+      if (phase%unloaded .and. .not. any(phase%withdrawn) .and. (lost .or. number == 1)) then
+        call fade_stresses(model, state, force, released_by)
       end if
       call hold_released(state%term, force, released_by, turns=number > 1)
       if (lost .or. any(phase%withdrawn)) state%sheet%plastic = .false.
@@ -114,17 +111,23 @@ contains
     end associate
   end subroutine give_up_stresses
 
-  !> Return the forces of the loads that act at the start of the phase, `(3, n_node)`, N.
-  function loads_without(model, released_by, state) result(force)
+  !> Let the nodal forces of the stresses fade in place of those of lost constraints. Loads that go on
+  !> are held in balance as long as these have not faded.
+  subroutine fade_stresses(model, state, force, released_by)
     type(model_t), intent(in) :: model
-    integer, intent(in) :: released_by(:)
+    !> In the running phase, with its loads.
     type(state_t), intent(inout) :: state
-    real(wp) :: force(3, model%n_node)
+    !> Forces of the nodes on lost constraints, `(3, n_node)`, N; get those that balance the loads.
+    real(wp), intent(out) :: force(:, :)
+    !> Tool that releases each node, `(n_node)`; gets none.
+    integer, intent(out) :: released_by(:)
 
+    call state%sheet%begin_fading()
     force = 0.0_wp
+    released_by = 0
     call hold_released(state%term, force, released_by, turns=.false.)
     force = external_forces(state%term, model, state%configuration_t)
-  end function loads_without
+  end subroutine fade_stresses
 
   !> Whether a phase names a tool that an earlier one released, so that it has contact again.
   pure logical function returns(model, number, tool)

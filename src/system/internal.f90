@@ -80,7 +80,7 @@ contains
           work%x_trial(:, :) = state%x(:, nodes)
           work%x_initial(:, :) = model%x0(:, nodes)
         end associate
-        work%enhanced = 0.0_wp
+        work%enhanced(:) = 0.0_wp
         call element%deform(element, state%sheet%orientation(:, :, :, e), work, verdict)
         work%stress(:, :) = state%sheet%fading_stress(:, :, e)
         call element%set_stress(element, work)
