@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Write punch.bez, die.bez and holder.bez, tools of a door panel with feature lines and a pocket for its handle.
+"""Write the tools of a door panel with feature lines and a pocket for its handle, punch.bez, die.bez and holder.bez, and
+rim.txt, its trim curve.
 
     tool_surfaces.py build/panel
 
@@ -24,6 +25,7 @@ THICKNESS, CLEARANCE = 0.8, 0.1  # of the sheet and beyond it
 OPENING = 500.0, 300.0  # half sizes of the opening along x and y
 CORNER, MARGIN = 100.0, 60.0  # radius of the opening in plan; distance of the grid from its straight sides
 FLANGE = 180.0  # width of the faces of die and holder around the opening
+RIM = 15.0  # distance of the trim curve from the opening
 ARCH = 40.0 / 600.0**2  # of the binder, z = ARCH x^2
 DEPTH, CROWN = 50.0, (6.0, 16.0)  # of the face below the binder at its rim, and its crown along x and y
 NOSE, SHOULDER = 8.0, 8.0  # radii of punch and die
@@ -241,13 +243,23 @@ def tools() -> dict[str, Surface]:
             "holder": facing(blank_holder(), -1)}
 
 
+def rim() -> np.ndarray:
+    """Return the trim curve in plan, counter-clockwise."""
+    arc = np.linspace(0, np.pi / 2, 31)
+    corners = [np.array([np.cos(arc + turn), np.sin(arc + turn)]) * (CORNER + RIM)
+               + (np.array(OPENING) - CORNER)[:, None] * np.sign([[math.cos(turn + 0.5)], [math.sin(turn + 0.5)]])
+               for turn in np.arange(4) * np.pi / 2]
+    return np.hstack(corners).T
+
+
 def main() -> None:
-    """Write the tools into the folder of the command line."""
+    """Write the files into the folder of the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=made_folder, help="folder of the files")
     folder = Path(parser.parse_args().folder)
     for name, surface in tools().items():
         write(folder / f"{name}.bez", surface, [f"{name} of the door panel"])
+    np.savetxt(folder / "rim.txt", np.pad(rim(), ((0, 0), (0, 1))), "%.6f", header="trim curve, mm")
 
 
 if __name__ == "__main__":

@@ -13,9 +13,10 @@ module dd3_model_sheet_compression
   public :: find_compressed
 
   !> Compressive membrane stress of a compressed sheet over its difference of principal stresses,
-  !> which is 0 in tension, a half in shear and 1 in compression, and over the largest difference in
-  !> the sheet.
-  real(wp), parameter :: of_own = 0.25_wp, of_largest = 0.15_wp
+  !> which is 0 in tension, a half in shear and 1 in compression; and this difference over the flow
+  !> stress, below which the sheet is far from yielding: under its weight a sheet is compressed at
+  !> many places.
+  real(wp), parameter :: of_own = 0.25_wp, of_flow = 0.5_wp
 
 contains
 
@@ -31,34 +32,38 @@ contains
     type(element_columns_t) :: quad
     !> Sums over the points of a column of elements, Kelvin, MPa.
     real(wp), allocatable :: stress(:, :)
-    !> Least principal stress, and difference of the principal stresses.
-    real(wp), allocatable :: least(:), difference(:)
+    !> Sums of the flow stresses, MPa.
+    real(wp), allocatable :: flow(:)
     integer, allocatable :: plastic(:)
     logical, allocatable :: found(:)
     logical :: touches(model%n_node)
-    real(wp) :: values(3), vectors(3, 3)
-    integer :: e, k
+    real(wp) :: values(3), vectors(3, 3), difference
+    integer :: e, k, p
 
     call new_element_columns(quad, model)
-    allocate (stress(6, quad%n), least(quad%n), difference(quad%n), source=0.0_wp)
+    allocate (stress(6, quad%n), flow(quad%n), source=0.0_wp)
     allocate (plastic(quad%n), source=0)
+    allocate (found(quad%n), source=.false.)
     do e = 1, size(model%part%element)
       k = quad%of_element(model%part%element(e))
       stress(:, k) = stress(:, k) + sum(state%sheet%stress(:, :, e), dim=2)
       if (any(state%sheet%plastic(:, e))) plastic(k) = 1
+      associate (material => model%material(model%material_of(model%part%element(e))))
+        do p = 1, model%element%n_point
+          flow(k) = flow(k) + material%flow_stress(state%sheet%internal_variables(:, p, e))
+        end do
+      end associate
     end do
     call sum_over_ranks(size(stress), stress)
+    call sum_over_ranks(size(flow), flow)
     call largest_over_ranks(size(plastic), plastic)
+    touches = touching_tools(model, state) > 0
     do k = 1, quad%n
       call symmetric_eigen(tensor_from_kelvin(stress(:, k)), values, vectors)
-      least(k) = minval(values)
-      difference(k) = maxval(values) - least(k)
-    end do
-    touches = touching_tools(model, state) > 0
-    found = -least > max(of_own*difference, of_largest*maxval(difference))
-    do k = 1, quad%n
+      difference = maxval(values) - minval(values)
+      if (difference < of_flow*flow(k) .or. -minval(values) <= of_own*difference) cycle
       associate (column => model%column(:, quad%corner(:, k)))
-        if (all(touches(column(1, :)) .and. touches(column(2, :)))) found(k) = .false.
+        found(k) = .not. (all(touches(column(1, :))) .and. all(touches(column(2, :))))
       end associate
     end do
     compressed = found(quad%of_element)

@@ -17,11 +17,12 @@ module dd3_sheet_trim
   use dd3_sheet_contour, only : find_contours
   use dd3_sheet_core, only : columns_that_stay, find_chains, select_core
   use dd3_sheet_curves, only : curve_t, read_curves
+  use dd3_sheet_cut_border, only : on_sheet, warn_of_border
   use dd3_sheet_cut_function, only : cut_function_t
   use dd3_sheet_cut_levels, only : divide_near_cut
   use dd3_sheet_fitting, only : fit_chain, fit_t
   use dd3_sheet_grid, only : new_grid
-  use dd3_sheet_location, only : bilinear, locate, natural_coordinates, place_t
+  use dd3_sheet_location, only : bilinear, locate, place_t
   use dd3_sheet_plane_curve, only : crossing_segments, is_inside, loop_t
   use dd3_sheet_projection, only : project_curves
   use dd3_sheet_rebuild, only : cut_t, least_sine_at, rebuild
@@ -35,9 +36,6 @@ module dd3_sheet_trim
   integer, parameter :: n_ring = 2
   !> Least sine of an angle of an element near the cut.
   real(wp), parameter :: least_sine = 0.15_wp
-  !> Distance of a curve beyond the border of the sheet that is told, over the length of the
-  !> element's side there.
-  real(wp), parameter :: told_distance = 0.01_wp
 
 contains
 
@@ -184,69 +182,6 @@ contains
         "curves on the sheet (see keep, along)", code="E153")
   end subroutine check_core
 
-  !> Warn of curves that bound what stays and go beyond the border of the sheet, and of curves
-  !> beside the sheet. Other curves across the border are notches.
-  subroutine warn_of_border(sheet, spec, cutting, curve)
-    type(sheet_t), intent(inout) :: sheet
-    type(trim_spec_t), intent(in) :: spec
-    type(cut_function_t), intent(in) :: cutting
-    type(curve_t), intent(in) :: curve(:)
-
-    real(wp), allocatable :: beyond(:)
-    character(len=:), allocatable :: text
-    logical :: cuts
-    integer :: i, k
-
-    do k = 1, size(cutting%loop)
-      associate (loop => cutting%loop(k))
-        beyond = [(distance_beyond(cutting, loop%point(:, i)), i=1, size(loop%point, 2))]
-        cuts = any(beyond <= 0.0_wp)
-        if (.not. cuts) cuts = any([(is_inside(cutting%loop(k:k), cutting%plane(:, i)), &
-            i=1, size(cutting%plane, 2))])
-      end associate
-      text = ""
-      if (.not. cuts) then
-        text = "lies beside the sheet, "//to_text(minval(beyond), 3)// &
-            " mm beyond its border, and cuts nothing"
-      else if (spec%keeps_inside .and. any(beyond > 0.0_wp)) then
-        text = "goes up to "//to_text(maxval(beyond), 3)//" mm beyond the border of the sheet, "// &
-            "which stays as it is there"
-      end if
-      if (len(text) > 0) call sheet%warnings%add_new("W125", "the curve of cut '"//spec%name// &
-          "' that begins here "//text, curve(k)%at)
-    end do
-  end subroutine warn_of_border
-
-  !> Return the distance of a point of the plane from the border of the sheet, mm, 0 on the sheet
-  !> and very near to it.
-  pure real(wp) function distance_beyond(cutting, point) result(distance)
-    type(cut_function_t), intent(in) :: cutting
-    real(wp), intent(in) :: point(2)
-
-    real(wp) :: from(2), along(2), away, side
-    integer :: i, q
-
-    distance = 0.0_wp
-    if (on_sheet(cutting, point)) return
-    distance = huge(1.0_wp)
-    side = 0.0_wp
-    associate (grid => cutting%grid)
-      do q = 1, grid%n_quad
-        do i = 1, 4
-          if (grid%neighbour(i, q) /= 0) cycle
-          from = cutting%plane(:, grid%corner(i, q))
-          along = cutting%plane(:, grid%corner(mod(i, 4) + 1, q)) - from
-          away = norm2(point - from - along*max(0.0_wp, min(1.0_wp, &
-              dot_product(point - from, along)/max(tiny(1.0_wp), dot_product(along, along)))))
-          if (away >= distance) cycle
-          distance = away
-          side = norm2(along)
-        end do
-      end do
-    end associate
-    if (distance <= told_distance*side) distance = 0.0_wp
-  end function distance_beyond
-
   !> Report chains that do not follow a line of the cut of their own, and lines that none follows.
   subroutine check_fits(spec, sheet, cut, fit, line, errors)
     type(trim_spec_t), intent(in) :: spec
@@ -280,24 +215,6 @@ contains
       return
     end do
   end subroutine check_fits
-
-  !> Whether a point of the plane lies on the sheet.
-  pure logical function on_sheet(cutting, point)
-    type(cut_function_t), intent(in) :: cutting
-    real(wp), intent(in) :: point(2)
-
-    real(wp) :: natural(2), corner(2, 4)
-    integer :: q
-
-    do q = 1, cutting%grid%n_quad
-      corner = cutting%plane(:, cutting%grid%corner(:, q))
-      if (any(point < minval(corner, dim=2)) .or. any(point > maxval(corner, dim=2))) cycle
-      call natural_coordinates(corner, point, natural, on_sheet)
-      if (on_sheet) on_sheet = all(abs(natural) <= 1.0_wp)
-      if (on_sheet) return
-    end do
-    on_sheet = .false.
-  end function on_sheet
 
   !> Set the quadrilaterals after the cut: those that stay, and a layer between each chain and its
   !> points on the curve.
