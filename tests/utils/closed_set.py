@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Parts with holes, notches and lanced forms, and the same parts made without any.
 
-    closed_set.py FOLDER          compare their closed sides and their tools; print the table of docs/parts.md
+    closed_set.py FOLDER          compare their closed sides and their tools; print their table
 """
 import contextlib
 import io

@@ -3,7 +3,7 @@
 """A set of sheet parts, each with what a die engineer says of it.
 
     part_set.py FOLDER [NAME ...]          write them as STEP, or BREP, into a folder
-    part_set.py FOLDER --table             read them, and print the table of docs/parts.md
+    part_set.py FOLDER --table             read them, and print their table
 
 All are made here by Gmsh and OpenCASCADE.
 """
