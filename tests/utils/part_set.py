@@ -22,7 +22,7 @@ from dd3 import pages
 from dd3.gmsh_session import session
 from dd3.part.reading import Request, read_part
 from dd3.programs import made_folder
-from dd3.tools.cad import silence
+from dd3.tools.cad_file import silence
 from dd3.tools.solids import along_s, edges
 
 occ = gmsh.model.occ
