@@ -343,6 +343,8 @@ module dd3_input_case
     real(wp) :: trial = 0.0_wp
     !> Whether all tools are released and supports are chosen where they are missing.
     logical :: unload = .false.
+    !> Whether `unload` takes the tools away at the start, in place of withdrawing them.
+    logical :: at_once = .false.
     !> Whether the state at the end is kept for other runs.
     logical :: keep = .false.
     !> Duration, s, and mean speed of the controlling tool, mm/s; 0 if not given.

@@ -193,7 +193,9 @@ contains
     do k = 1, size(key)
       if (block%find(key(k)%name) > 0) cycle
       value = key(k)%default
-      if (block%number(key(k)%implied_by) > 0.0_wp) value = key(k)%implied
+      if (block%find(key(k)%implied_by) > 0) then
+        if (block%word(key(k)%implied_by) /= "off") value = key(k)%implied
+      end if
       if (value == "-") cycle
       if (value == "") then
         call errors%push_input(block%opened, "'"//trim(key(k)%name)//"' is missing in "// &

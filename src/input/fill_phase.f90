@@ -40,7 +40,8 @@ contains
     call set_by_accuracy(phase%limits, phase%contact%mixed)
     phase%control = tool_position(case, block%word("control"))
     if (block%has("trial")) phase%trial = block%number("trial")
-    phase%unload = block%number("unload") > 0.5_wp
+    phase%unload = block%word("unload") /= "off"
+    phase%at_once = block%word("unload") == "at_once"
     phase%keep = block%number("keep") > 0.5_wp
     if (block%has("duration")) phase%duration = block%number("duration")
     if (block%has("speed")) phase%speed = block%number("speed")

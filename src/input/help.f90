@@ -99,7 +99,7 @@ contains
     case ("")
       text = "must be given"
       if (key%implied /= "") text = text//"; "//trim(key%implied)//" with "// &
-          trim(key%implied_by)//" = on"
+          trim(key%implied_by)
     case ("-")
       text = "optional"
     case default

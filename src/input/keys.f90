@@ -377,8 +377,10 @@ contains
           "pairs from 0 0 on; default: 0 0 1 1", count=0), &
       row("press_table", kind_reals, "", "-", "progress and factor on the forces of press, in "// &
           "pairs to 1; default: 1 1", count=0), &
-      row("unload", kind_logical, "", "-", "on: springback. All tools are withdrawn at the "// &
-          "same time, with contact; supports are chosen that stop the rigid motions left free"), &
+      row("unload", kind_name, "", "off", "springback; supports are chosen that stop the rigid "// &
+          "motions left free. on: all tools are withdrawn at the same time, with contact. "// &
+          "at_once: they are taken away at the start of the phase, over which the nodal forces "// &
+          "of the stresses at its start fade", choices="off on at_once"), &
       row("keep", kind_logical, "", "-", "on: the state at the end is kept in the folder of "// &
           "the phase's name in that of the results, for from of *START"), &
       row("until", kind_other, "mm or N", "-", &

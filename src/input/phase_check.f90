@@ -110,7 +110,7 @@ contains
     integer :: i
 
     released = "released"
-    if (phase%unload) released = "released, by unload = on,"
+    if (phase%unload) released = "released, by unload,"
     do i = 1, size(phase%press)
       if (withdrawn(phase%press(i)%tool)) call errors%push_input(phase%press(i)%at, &
           "a tool cannot be pressed and "//released//" in the same phase", code="E124")
@@ -121,6 +121,9 @@ contains
           "move for the path of a released tool", code="E124")
     end do
     do i = 1, size(phase%move)
+      if (phase%at_once) call errors%push_input(phase%move(i)%at, &
+          "a tool cannot move in a phase that takes it away, by unload = at_once", &
+          "unload = on, which withdraws the tools", code="E124")
       if (withdrawn(phase%move(i)%tool) .and. size(phase%move_table) > 0) then
         call errors%push_input(phase%move(i)%at, "move_table does not act on a tool that is "// &
           released//" in the same phase: it is withdrawn at a constant rate", code="E124")

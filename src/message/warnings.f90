@@ -146,7 +146,7 @@ contains
       row("W116", "sheet that snaps in a release", &
           "Increments failed without viscous forces, which took more than 0.1 % of the elastic "// &
           "energy released: the sheet jumped from one equilibrium to another.", &
-          "Compare with tools withdrawn in another order by `move`; a smaller `trial`.")]
+          "Compare with `unload = at_once`, or tools withdrawn in another order by `move`.")]
   end function process_warnings
 
   !> Return the warnings of the refined mesh and of the formed sheet.

@@ -7,7 +7,7 @@ module dd3_model_reactions
   use dd3_model_model, only : model_t
   implicit none
   private
-  public :: reactions, unbalanced_forces
+  public :: reactions, unbalanced_forces, size_of_internal_forces
 
 contains
 
@@ -30,5 +30,16 @@ contains
     force = state%sheet%internal_force - state%external_force
     force = force + model%nodal_contact_forces(state%x, state%contact%lambda, state%contact%place)
   end function unbalanced_forces
+
+  !> Return the norm of the nodal forces of the stresses, or of what is left of fading ones if that is
+  !> larger, N.
+  real(wp) function size_of_internal_forces(model, state) result(scale)
+    type(model_t), intent(in) :: model
+    class(configuration_t), intent(in) :: state
+
+    scale = norm2(state%sheet%internal_force)
+    if (allocated(state%sheet%fading_force)) scale = max(scale, &
+        model%phase(state%phase)%fading(state%progress)*norm2(state%sheet%fading_force))
+  end function size_of_internal_forces
 
 end module dd3_model_reactions

@@ -13,7 +13,7 @@ module dd3_model_sheet_state
 
   !> State of the sheet.
   type :: sheet_state_t
-    !> Internal forces, `(3, n_node)`, N.
+    !> Internal forces, `(3, n_node)`, N; without those of fading stresses.
     real(wp), allocatable :: internal_force(:, :)
     !> Cauchy stress in the material frame, Kelvin, `(6, n_point, n_element)`, MPa.
     real(wp), allocatable :: stress(:, :, :)
@@ -22,12 +22,19 @@ module dd3_model_sheet_state
     real(wp), allocatable :: internal_variables(:, :, :)
     !> Orthotropy axes as columns in the global frame, `(3, 3, n_point, n_element)`.
     real(wp), allocatable :: orientation(:, :, :, :)
+    !> Stresses at the start of the phase, as `stress`, whose nodal forces fade over the phase as
+    !> external forces; not allocated without such forces.
+    real(wp), allocatable :: fading_stress(:, :, :)
+    !> These forces at their full size, in the committed configuration, `(3, n_node)`, N.
+    real(wp), allocatable :: fading_force(:, :)
     !> Parameters of the elements' enhanced strains in the increment, `(n_enhanced, n_element)`;
     !> zero in the committed state.
     real(wp), allocatable :: enhanced(:, :)
     !> Whether the last increment was plastic, `(n_point, n_element)`.
     logical, allocatable :: plastic(:, :)
   contains
+    procedure :: begin_fading
+    procedure :: end_fading
     procedure :: walk
   end type sheet_state_t
 
@@ -64,12 +71,40 @@ contains
     end associate
   end subroutine new_sheet_state
 
+  !> Let the present stresses fade over the phase, from their full size.
+  subroutine begin_fading(self)
+    class(sheet_state_t), intent(inout) :: self
+
+    self%fading_stress = self%stress
+    self%fading_force = self%internal_force
+    self%internal_force = 0.0_wp
+  end subroutine begin_fading
+
+  !> End the fading.
+  subroutine end_fading(self, left)
+    class(sheet_state_t), intent(inout) :: self
+    !> Fraction of the stresses that is left.
+    real(wp), intent(in) :: left
+
+    if (.not. allocated(self%fading_stress)) return
+    self%internal_force = self%internal_force + left*self%fading_force
+    deallocate (self%fading_stress, self%fading_force)
+  end subroutine end_fading
+
   !> Pass every component to a visitor.
   subroutine walk(self, visitor)
     class(sheet_state_t), intent(inout) :: self
     class(state_visitor_t), intent(inout) :: visitor
 
+    logical :: fades
+
+    fades = allocated(self%fading_stress)
     call visitor%reals("internal_force", size(self%internal_force), self%internal_force)
+    call visitor%one_logical("fades", fades)
+    if (fades .and. .not. allocated(self%fading_stress)) then
+      allocate (self%fading_stress, mold=self%stress)
+      allocate (self%fading_force, mold=self%internal_force)
+    end if
     associate (n => size(self%plastic, 2), n_point => size(self%plastic, 1), &
         n_variable => size(self%internal_variables, 1))
       call visitor%reals_of_items(of_elements, "stress", 6*n_point, n, self%stress)
@@ -78,6 +113,9 @@ contains
       call visitor%reals_of_items(of_elements, "orientation", 9*n_point, n, self%orientation)
       call visitor%reals_of_items(of_elements, "enhanced", size(self%enhanced, 1), n, self%enhanced)
       call visitor%logicals_of_items(of_elements, "plastic", n_point, n, self%plastic)
+      if (.not. fades) return
+      call visitor%reals_of_items(of_elements, "fading_stress", 6*n_point, n, self%fading_stress)
+      call visitor%reals("fading_force", size(self%fading_force), self%fading_force)
     end associate
   end subroutine walk
 

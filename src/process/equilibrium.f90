@@ -13,6 +13,7 @@ module dd3_process_equilibrium
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : is_normal_held
   use dd3_model_pressed_tools, only : as_forces, turn_tools, unknowns_of
+  use dd3_model_reactions, only : size_of_internal_forces
   use dd3_model_state, only : state_t
   use dd3_model_terms_list, only : add_stiffness
   use dd3_model_terms_viscous, only : has_viscous
@@ -302,9 +303,8 @@ contains
         if (phase%pressed(tool)) work = work - dot_product(problem%tool_residual(:, tool), &
             unknowns_of(phase, tool, step%tool(:, tool), step%tilt(:, tool)))
       end do
-      if (abs(work) <= negligible_work*norm2(self%trial%sheet%internal_force)*norm2(step%x)) then
-        work = 0.0_wp
-      end if
+      if (abs(work) <= negligible_work*size_of_internal_forces(model, self%trial)*norm2(step%x)) &
+          work = 0.0_wp
       work = agreed(work)
     end associate
   end function slope

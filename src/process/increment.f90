@@ -25,6 +25,7 @@ module dd3_process_increment
   use dd3_process_predictor, only : predict
   use dd3_process_step_control, only : attempt_t, set_next_r_cap, stepper_t
   use dd3_process_work, only : add_work
+  use dd3_system_internal, only : evaluate_fading
   use dd3_system_linear_problem, only : linear_problem_t
   implicit none
   private
@@ -45,6 +46,7 @@ contains
     type(stepper_t), intent(inout) :: stepper
 
     stepper%attempt = attempt_t(releases=has_released(committed%term) &
+        .or. allocated(committed%sheet%fading_stress) &
         .or. any(model%phase(committed%phase)%withdrawn))
     call begin_increment(committed%term, model, committed%configuration_t)
     stepper%attempt%viscosity = viscous_strength(committed%term)
@@ -180,9 +182,10 @@ contains
     type(model_t), intent(in) :: model
     !> Gets work, slip and passages over open edges of the increment.
     type(state_t), intent(inout) :: trial
-    type(stepper_t), intent(in) :: stepper
+    type(stepper_t), intent(inout) :: stepper
     type(state_t), intent(inout) :: committed
 
+    call evaluate_fading(stepper%system, model, trial)
     call add_work(model, stepper%system%contact, committed, trial)
     call observe_passages(model, committed, trial)
     trial%open = has_opened(model, trial)

@@ -20,6 +20,7 @@ module dd3_process_norm
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_pressed_tools, only : as_forces
+  use dd3_model_reactions, only : size_of_internal_forces
   use dd3_model_state, only : state_t
   use dd3_system_system, only : system_t
   implicit none
@@ -156,7 +157,7 @@ contains
     associate (phase => model%phase(trial%phase))
       force = agreed(norm_over_ranks(step) + residual%norm)
       scale = agreed(max(norm_over_ranks(norm2(trial%contact%lambda)), &
-          norm2(trial%sheet%internal_force)))
+          size_of_internal_forces(model, trial)))
       if (force >= convergence_tolerance(phase, trial)*scale) then
         round_off = attainable_residual(system%column_square, trial%x)
         scale = max(scale, round_off/convergence_tolerance(phase, trial))

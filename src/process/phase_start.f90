@@ -59,6 +59,7 @@ contains
       call state%term(k)%of%begin_phase(model, number, state%configuration_t)
     end do
     call free_directions(model, number, state, force, lost)
+    call give_up_stresses(model, state, force)
     do tool = 1, model%n_tool
       if (returns(model, number, tool)) state%contact%hint(tool, :) = hint_t()
     end do
@@ -76,6 +77,9 @@ contains
       if (phase%until%kind == until_force) start%until_from_below = &
           abs(until_value(phase, state)) <= phase%until%value
       call release_contacts(model, phase, state, force, released_by, lost)
+      if (phase%unloaded .and. .not. any(phase%withdrawn) .and. (lost .or. number == 1)) then
+        call fade_stresses(model, state, force, released_by)
+      end if
       call hold_released(state%term, force, released_by, turns=number > 1)
       if (lost .or. any(phase%withdrawn)) state%sheet%plastic = .false.
       do tool = 1, model%n_tool
@@ -91,6 +95,39 @@ contains
     state%work%tools = state%work%tools + contact_energy(model, state) - stored
     state%external_force = external_forces(state%term, model, state%configuration_t)
   end subroutine begin_phase
+
+  !> End the fading of stresses; what is left of their forces is added to those of lost constraints.
+  subroutine give_up_stresses(model, state, force)
+    type(model_t), intent(in) :: model
+    !> The state at the end of the phase before.
+    type(state_t), intent(inout) :: state
+    !> Forces of the nodes on lost constraints, `(3, n_node)`, N.
+    real(wp), intent(inout) :: force(:, :)
+
+    if (.not. allocated(state%sheet%fading_force)) return
+    associate (left => model%phase(state%phase)%fading(state%progress))
+      force = force - left*state%sheet%fading_force
+      call state%sheet%end_fading(left)
+    end associate
+  end subroutine give_up_stresses
+
+  !> Let the nodal forces of the stresses fade in place of those of lost constraints. Loads that go on
+  !> are held in balance as long as these have not faded.
+  subroutine fade_stresses(model, state, force, released_by)
+    type(model_t), intent(in) :: model
+    !> In the running phase, with its loads.
+    type(state_t), intent(inout) :: state
+    !> Forces of the nodes on lost constraints, `(3, n_node)`, N; get those that balance the loads.
+    real(wp), intent(out) :: force(:, :)
+    !> Tool that releases each node, `(n_node)`; gets none.
+    integer, intent(out) :: released_by(:)
+
+    call state%sheet%begin_fading()
+    force = 0.0_wp
+    released_by = 0
+    call hold_released(state%term, force, released_by, turns=.false.)
+    force = external_forces(state%term, model, state%configuration_t)
+  end subroutine fade_stresses
 
   !> Whether a phase names a tool that an earlier one released, so that it has contact again.
   pure logical function returns(model, number, tool)

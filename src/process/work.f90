@@ -26,15 +26,20 @@ contains
     type(state_t), intent(in) :: old
     type(state_t), intent(inout) :: new
 
-    real(wp) :: moved(3, model%n_node)
+    real(wp) :: moved(3, model%n_node), faded
     integer :: k
 
     moved = new%x - old%x
-    new%work%internal = old%work%internal &
+    faded = 0.0_wp
+    if (allocated(new%sheet%fading_force)) faded = 0.5_wp*sum(moved*( &
+        model%phase(old%phase)%fading(old%progress)*old%sheet%fading_force &
+        + model%phase(new%phase)%fading(new%progress)*new%sheet%fading_force))
+    new%work%internal = old%work%internal + faded &
         + 0.5_wp*sum((old%sheet%internal_force + new%sheet%internal_force)*moved)
     new%work%plastic = old%work%plastic + plastic_work_increment(model, old, new)
     new%work%modulus = old%work%modulus + modulus_energy_increment(model, old, new)
     call add_external_work(model, old, moved, new)
+    new%work%external = new%work%external + faded
     call add_contact_work(model, contact, old, new)
     do k = 1, size(new%term)
       call new%term(k)%of%accept(model, old%configuration_t, new%configuration_t)

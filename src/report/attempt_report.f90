@@ -44,6 +44,7 @@ module dd3_report_attempt_report
   character(len=*), parameter :: limit_remedy = "a larger value of this limit"
   character(len=*), parameter :: necked_remedy = "larger radii of the tools, less restraint "// &
       "and friction, as the sheet has necked"
+  character(len=*), parameter :: unload_remedy = "unload = at_once in the phase"
   character(len=*), parameter :: mesh_remedy = "a finer mesh there"
 
   !> Factors on the penalty, on the height of the contact layer and on the limit of rotation that
@@ -198,6 +199,9 @@ contains
 
     remedy = remedy_of_input(committed, attempt)
     if (len(remedy) == 0 .and. has_necked(model, committed)) remedy = necked_remedy
+    associate (phase => model%phase(committed%phase))
+      if (len(remedy) == 0 .and. phase%unloaded .and. any(phase%withdrawn)) remedy = unload_remedy
+    end associate
     if (len(remedy) == 0 .and. attempt%passage%tool > 0) remedy = surface_remedy
     if (len(remedy) > 0) return
     associate (phase => model%phase(committed%phase), verdict => attempt%verdict)

@@ -57,6 +57,7 @@ contains
       call json%add("trial", spec%trial)
       call json%add("length", phase%length)
       call json%add("unload", spec%unload)
+      call json%add("at_once", spec%at_once)
       call add_tool_motions(json, model, phase, spec)
       call add_supports(json, phase)
       call add_until(json, model, phase)

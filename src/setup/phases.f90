@@ -232,6 +232,7 @@ contains
       end associate
     end do
     do t = 1, size(phase%active)
+      if (spec%at_once) call stop_pressing(phase, t, .false.)
       if (spec%unload .or. any(spec%release%tool == t)) call withdraw(model, t, phase)
     end do
     if (spec%unload .and. any(phase%withdrawn) .and. size(spec%table) == 0) phase%opening = opening

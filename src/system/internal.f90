@@ -12,6 +12,7 @@ module dd3_system_internal
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_element_work, only : element_work_t
   use dd3_linalg_matrix, only : add_element, clear, copy_values
+  use dd3_model_configuration, only : configuration_t
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_system_partition, only : share_verdict
@@ -19,7 +20,7 @@ module dd3_system_internal
   use dd3_system_system, only : system_t
   implicit none
   private
-  public :: update_material, assemble_stiffness
+  public :: update_material, assemble_stiffness, evaluate_fading
 
 contains
 
@@ -58,6 +59,37 @@ contains
     call visit_elements(system, model, committed, .false., .true., verdict, trial)
     call system%partition%complete_forces(model%n_node, system%enhanced%force)
   end subroutine assemble_stiffness
+
+  !> Evaluate the nodal forces of fading stresses at their full size, in the present configuration.
+  subroutine evaluate_fading(system, model, state)
+    !> Provides the workspaces.
+    type(system_t), intent(inout) :: system
+    type(model_t), intent(in) :: model
+    !> Gets `fading_force`.
+    type(state_t), intent(inout) :: state
+
+    type(verdict_t) :: verdict
+    integer :: e
+
+    if (.not. allocated(state%sheet%fading_stress)) return
+    state%sheet%fading_force = 0.0_wp
+    associate (work => system%element(1), element => model%element)
+      do e = 1, size(model%part%element)
+        associate (nodes => model%connectivity(:, model%part%element(e)))
+          work%x_committed(:, :) = state%x(:, nodes)
+          work%x_trial(:, :) = state%x(:, nodes)
+          work%x_initial(:, :) = model%x0(:, nodes)
+        end associate
+        work%enhanced(:) = 0.0_wp
+        call element%deform(element, state%sheet%orientation(:, :, :, e), work, verdict)
+        work%stress(:, :) = state%sheet%fading_stress(:, :, e)
+        call element%set_stress(element, work)
+        call element%evaluate_force(element, work)
+        call add_forces(model, e, work%force, state%sheet%fading_force)
+      end do
+    end associate
+    call sum_over_ranks(size(state%sheet%fading_force), state%sheet%fading_force)
+  end subroutine evaluate_fading
 
   !> Update the elements of the system, or set their workspaces, and add their stiffness.
   subroutine visit_elements(system, model, committed, updates, with_stiffness, verdict, trial)
@@ -156,11 +188,25 @@ contains
         if (verdict%outcome /= verdict_converged) return
       end do
       trial%sheet%orientation(:, :, :, e) = work%rotation
-      work%stress(:, :) = trial%sheet%stress(:, :, e)
+      work%stress(:, :) = acting_stress(model, trial, e)
       call element%set_stress(element, work)
       call element%evaluate_force(element, work)
     end associate
   end subroutine update_element
+
+  !> Return the stresses that the forces of an element belong to: those of its points less what is
+  !> left of fading ones, in the material frame, Kelvin, `(6, n_point)`, MPa.
+  pure function acting_stress(model, state, e) result(stress)
+    type(model_t), intent(in) :: model
+    class(configuration_t), intent(in) :: state
+    !> Number in the part.
+    integer, intent(in) :: e
+    real(wp) :: stress(6, model%element%n_point)
+
+    stress = state%sheet%stress(:, :, e)
+    if (allocated(state%sheet%fading_stress)) stress = stress &
+        - model%phase(state%phase)%fading(state%progress)*state%sheet%fading_stress(:, :, e)
+  end function acting_stress
 
   !> Add the forces of an element to those of its nodes.
   pure subroutine add_forces(model, e, force, sum)
@@ -200,10 +246,10 @@ contains
         work%x_trial(:, :) = trial%x(:, nodes)
         work%enhanced(:) = trial%sheet%enhanced(:, e)
         call element%deform(element, committed%sheet%orientation(:, :, :, e), work, verdict)
-        work%stress(:, :) = trial%sheet%stress(:, :, e)
+        work%stress(:, :) = acting_stress(model, trial, e)
       else
         call element%linearise(element, committed%sheet%orientation(:, :, :, e), work, verdict)
-        work%stress(:, :) = committed%sheet%stress(:, :, e)
+        work%stress(:, :) = acting_stress(model, committed, e)
       end if
       call element%set_stress(element, work)
     end associate

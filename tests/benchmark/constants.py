@@ -8,8 +8,9 @@ at twice its value.
     tests/benchmark/constants.py --work build/constants --tables refinement
 
 The tables have the changes of iterations and cut-backs (of a refined mesh first of elements and refinements), and the
-largest change of a result. docs/reports/constants.md has the conclusions. A copy of the sources, in which the constants are variables, is built once; each variant is a copy of that program with
-another number in its data. A run is kept in the folder of its variant, and not repeated.
+largest change of a result. docs/reports/constants.md has the conclusions. A copy of the sources, in which the constants
+are variables, is built once; each variant is a copy of that program with another number in its data. A run is kept in
+the folder of its variant, and not repeated.
 """
 import argparse
 import re

@@ -183,8 +183,9 @@ def main():
     options = arguments(__doc__)
     bench = Bench(options.program, options.work)
     found = [rows_of(bench, name, part) for name, part in PARTS.items() if not options.only or name in options.only]
-    head = ["part", "release", "change of shape, mm", "rim, degrees", "from `unload`, mm", "from punch, then holder, mm",
-            "from holder, then punch, mm", "from the band, %", "increments", "iterations", "warnings"]
+    head = ["part", "release", "change of shape, mm", "rim, degrees", "from `unload`, mm",
+            "from punch, then holder, mm", "from holder, then punch, mm", "from the band, %", "increments", "iterations",
+            "warnings"]
     print(table(head, [row for rows, _ in found for row in rows]))
     if options.write:
         shown = (0, 2, 3, *range(5, len(head)))

@@ -30,7 +30,7 @@ DIFFERENT = {
                               ("material = mild_steel", "material = steel")), "the materials"),
     "set": ((("near = 80 0 0", "near = 90 0 0"),), "set 'middle'"),
     "new set": ((("*BOUNDARY symmetry", "*SET tip\n  near = 175 0 0\n\n*BOUNDARY symmetry"),), "set 'tip' (new)"),
-    "supports": ((("fix = y", "fix = y z"),), "the supports (*BOUNDARY)"),
+    "supports": ((("fix = y", "fix = y z"),), "the supports (*BOUNDARY), phase 'springback'"),
     "friction": ((('die.bez"\n  friction = 0.144', 'die.bez"\n  friction = 0.1'),), "tool 'die'"),
     "move": ((("punch 0 0 -20", "punch 0 0 -21"),), "phase 'draw'"),
 }
@@ -57,7 +57,8 @@ class Runs:
         check(later, "no element was divided in the middle")
         at = increments.index(later[0])
         check(at > 1, "no restart file before elements were divided")
-        for increment in (increments[at - 2], increments[at - 1], increments[at], increments[-1]):
+        # The fourth from the end lies in the springback, while stresses fade.
+        for increment in (*increments[at - 2:at + 1], increments[-4], increments[-1]):
             output = fresh(self.work / "continued")
             try:
                 self.runner.run(self.deck, output, self.found[increment])

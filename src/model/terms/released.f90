@@ -1,7 +1,9 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Forces of lost constraints: supports that a phase frees, tools and draw-beads that it takes away,
 !> and the forces out of balance of a sheet that is taken over from another run. They turn with the
-!> sheet and fall linearly over the phase, so that the sheet is released gradually.
+!> sheet and fall linearly over the phase, so that the sheet is released gradually. Where the whole
+!> sheet is released, the nodal forces of its stresses fade in their place (`fading_stress` of the
+!> sheet's state); of these the term has the rate alone.
 module dd3_model_terms_released
   use dd3_base_kinds, only : wp
   use dd3_linalg_matrix, only : block_matrix_t, position_of
@@ -148,6 +150,9 @@ contains
 
     force = force + step*(model%phase(committed%phase)%fading_rate(committed%progress) &
         *carried(self, model, committed))
+    if (allocated(committed%sheet%fading_force)) force = force - step*( &
+        model%phase(committed%phase)%fading_rate(committed%progress) &
+        *committed%sheet%fading_force)
   end subroutine add_rate
 
   !> Set what is left in a trial state.
