@@ -93,7 +93,20 @@ contains
   function friction_markdown() result(text)
     character(len=:), allocatable :: text
 
-    text = newline//"# Friction laws"//newline//table_of(friction_key, friction_laws())
+    type(description_t), allocatable :: law(:)
+    integer :: i, p
+
+    law = friction_laws()
+    text = newline//"# Friction laws"//newline//heading(friction_key)// &
+        "| law | meaning | parameters |"//newline//"|---|---|---|"//newline
+    do i = 1, size(law)
+      text = text//"| `"//trim(law(i)%name)//"` | "//escaped(trim(law(i)%title))//" | "
+      do p = 1, size(law(i)%rows)
+        if (p > 1) text = text//"; "
+        text = text//"`"//trim(law(i)%rows(p)%name)//"` "//escaped(trim(law(i)%rows(p)%help))
+      end do
+      text = text//" |"//newline
+    end do
   end function friction_markdown
 
   !> Return the manual's reference of all laws in Markdown.
@@ -103,14 +116,24 @@ contains
     type(description_t), allocatable :: law(:)
     integer :: k
 
-    text = newline//"# Laws"//newline
+    text = newline//"# Laws"//newline//newline//"`dd3imp --help law` and the page of a law have "// &
+        "its parameters with meaning, unit, bounds and"//newline//"default, and its source."// &
+        newline
     do k = 1, size(kinds)
       call describe_laws(kinds(k), law)
       text = text//table_of(keys(k), law)
     end do
   end function law_reference_markdown
 
-  !> Return the reference of the laws of a key in Markdown.
+  !> Return the heading of the laws of a key in Markdown.
+  function heading(key)
+    character(len=*), intent(in) :: key
+    character(len=:), allocatable :: heading
+
+    heading = newline//"## `"//trim(key)//" = law key=value ...`"//newline//newline
+  end function heading
+
+  !> Return the laws of a key with the names of their parameters in Markdown.
   function table_of(key, law) result(text)
     character(len=*), intent(in) :: key
     type(description_t), intent(in) :: law(:)
@@ -118,15 +141,14 @@ contains
 
     integer :: i, p
 
-    text = newline//"## `"//trim(key)//" = law key=value ...`"//newline//newline// &
-        "| law | meaning | parameters | source |"//newline//"|---|---|---|---|"//newline
+    text = heading(key)//"| law | meaning | parameters | page |"//newline//"|---|---|---|---|"// &
+        newline
     do i = 1, size(law)
-      text = text//"| `"//trim(law(i)%name)//"` | "//escaped(trim(law(i)%title))//" | "
+      text = text//"| `"//trim(law(i)%name)//"` | "//escaped(trim(law(i)%title))//" |"
       do p = 1, size(law(i)%rows)
-        if (p > 1) text = text//"; "
-        text = text//"`"//trim(law(i)%rows(p)%name)//"` "//escaped(trim(law(i)%rows(p)%help))
+        text = text//" `"//trim(law(i)%rows(p)%name)//"`"
       end do
-      text = text//" | "//escaped(trim(law(i)%source))//" |"//newline
+      text = text//" | [page](laws/"//trim(law(i)%name)//".md) |"//newline
     end do
   end function table_of
 

@@ -147,10 +147,48 @@ contains
       text = text//newline//"| key | value | default | meaning |"//newline//"|---|---|---|---|"// &
           newline
       do k = 1, size(table(i)%key)
-        text = text//markdown_row(table(i)%key(k))
+        if (describing(table, i, k) == i) text = text//markdown_row(table(i)%key(k))
       end do
+      text = text//keys_above(table, i)
     end do
   end function reference_markdown
+
+  !> Return the first block that describes key k of block i in the same words.
+  function describing(table, i, k) result(block)
+    type(block_row_t), intent(in) :: table(:)
+    integer, intent(in) :: i, k
+    integer :: block
+
+    integer :: n
+
+    do block = 1, i - 1
+      do n = 1, size(table(block)%key)
+        if (table(block)%key(n)%name == table(i)%key(k)%name .and. &
+            table(block)%key(n)%help == table(i)%key(k)%help) return
+      end do
+    end do
+    block = i
+  end function describing
+
+  !> Return the names of the keys of block i that blocks above describe, in Markdown.
+  function keys_above(table, i) result(text)
+    type(block_row_t), intent(in) :: table(:)
+    integer, intent(in) :: i
+    character(len=:), allocatable :: text
+
+    character(len=:), allocatable :: names
+    integer :: block, k
+
+    text = ""
+    do block = 1, i - 1
+      names = ""
+      do k = 1, size(table(i)%key)
+        if (describing(table, i, k) == block) names = names//", `"//trim(table(i)%key(k)%name)//"`"
+      end do
+      if (names /= "") text = text//newline//"As in `"//trim(title(table(block)))//"`: "// &
+          names(3:)//"."//newline
+    end do
+  end function keys_above
 
   !> Return one key as a row of a Markdown table.
   function markdown_row(key) result(text)

@@ -80,6 +80,13 @@ contains
   function run_warnings() result(list)
     type(message_row_t), allocatable :: list(:)
 
+    list = [process_warnings(), sheet_warnings()]
+  end function run_warnings
+
+  !> Return the warnings of supports, tools, restart and solution.
+  function process_warnings() result(list)
+    type(message_row_t), allocatable :: list(:)
+
     list = [ &
       row("W101", "records that begin at the restart", &
           "Records of the earlier run are missing or have other columns.", &
@@ -139,7 +146,14 @@ contains
       row("W116", "sheet that snaps in a release", &
           "Increments failed without viscous forces, which took more than 0.1 % of the elastic "// &
           "energy released: the sheet jumped from one equilibrium to another.", &
-          "Compare with `unload = at_once`, or tools withdrawn in another order by `move`."), &
+          "Compare with `unload = at_once`, or tools withdrawn in another order by `move`.")]
+  end function process_warnings
+
+  !> Return the warnings of the refined mesh and of the formed sheet.
+  function sheet_warnings() result(list)
+    type(message_row_t), allocatable :: list(:)
+
+    list = [ &
       row("W117", "elements divided too late", &
           "An increment was made again on finer meshes as often as allowed and still bends the "// &
           "sheet by more than 1.3 times `adaptive_angle` over elements that could be divided. "// &
@@ -188,7 +202,7 @@ contains
           "curves of a whole part do beside a quarter of it.", &
           "Curves on the sheet, or a larger blank; in a quarter of a sheet it is as it "// &
           "should be.")]
-  end function run_warnings
+  end function sheet_warnings
 
   !> Return the notes.
   function notes() result(list)

@@ -6,10 +6,11 @@ at twice its value.
     tests/benchmark/constants.py --work build/constants
     tests/benchmark/constants.py --work build/constants --only largest_ratio tool_weight
     tests/benchmark/constants.py --work build/constants --tables refinement
-    tests/benchmark/constants.py --work build/constants --write     and put the tables into docs/reports/constants.md
 
-A copy of the sources, in which the constants are variables, is built once; each variant is a copy of that program with
-another number in its data. A run is kept in the folder of its variant, and not repeated.
+The tables have the changes of iterations and cut-backs (of a refined mesh first of elements and refinements), and the
+largest change of a result. docs/reports/constants.md has the conclusions. A copy of the sources, in which the constants
+are variables, is built once; each variant is a copy of that program with another number in its data. A run is kept in
+the folder of its variant, and not repeated.
 """
 import argparse
 import re
@@ -21,12 +22,11 @@ from pathlib import Path
 
 from dd3.errors import Problem, check
 from dd3.errors import run as run_main
-from dd3.pages import put_table, table
+from dd3.pages import table
 from dd3.run import read_job
 from dd3.tables import number, read_table
 
 ROOT = Path(__file__).resolve().parents[2]
-REPORT = ROOT / "docs" / "reports" / "constants.md"
 # Sources of the constants, by the name of the table.
 GROUPS = {"corrector": ("process/newton", "process/norm", "process/equilibrium", "process/tool_balance",
                         "process/limiters", "process/step_control", "process/predictor", "process/phase_end",
@@ -242,15 +242,9 @@ def main():
     parser.add_argument("--work", type=Path, required=True)
     parser.add_argument("--only", nargs="*", help="names of constants")
     parser.add_argument("--tables", nargs="*", choices=GROUPS, default=list(GROUPS), help="these tables")
-    parser.add_argument("--write", action="store_true")
     arguments = parser.parse_args()
     work = arguments.work.resolve()
     program, constants = build(work)
-    if not (work / "commit").exists():  # of the sources that are copied, which are not under version control there
-        head, changes = (subprocess.run(["git", "-C", str(ROOT), *command], capture_output=True, text=True,
-                                        check=True).stdout for command in (["rev-parse", "HEAD"],
-                                                                           ["status", "--porcelain", "src"]))
-        (work / "commit").write_text(head[:7] + ("+" if changes else ""), encoding="utf-8")
     if arguments.only:
         constants = [constant for constant in constants if constant.name in arguments.only]
     for name in arguments.tables:
@@ -259,11 +253,7 @@ def main():
         folder, runs, summarise = (work / "refinement", refined_cases(), refined_summary) if name == "refinement" else (
             work, cases(), summary)
         rows = measured_constants(folder, program, group, runs, summarise)
-        if arguments.write:
-            jobs = [read_job(folder / "base" / run / "out") for run in runs]
-            for job in jobs:
-                job["program"]["commit"] = (work / "commit").read_text(encoding="utf-8").strip()
-            put_table(REPORT, name, table(["constant", "value", "meaning", *FACTORS], rows), jobs)
+        print(name, table(["constant", "value", "meaning", *FACTORS], rows), sep="\n\n", end="\n\n")
 
 
 if __name__ == "__main__":

@@ -405,7 +405,7 @@ def values_of(references, name):
 
 
 def tables(measured, references):
-    """Return the tables of runs by problem and label: the effort of each run, and each quantity."""
+    """Return the tables of runs by problem and label: that of the effort of each run, and that of each quantity."""
     labels = list(dict.fromkeys(label for runs in measured.values() for label in runs))
     effort, quantities = [], []
     for name, runs in measured.items():
@@ -423,8 +423,8 @@ def tables(measured, references):
             quantities.append([name, note, ""] + [cell for label in labels for cell in
                                                   (shown(runs[label].notes[note]) if label in runs else "", "")])
     heads = [cell for label in labels for cell in (label, "deviation, %")]
-    return "\n\n".join((studies.table(["problem", "label", *EFFORT, "largest deviation, %"], effort),
-                        studies.table(["problem", "quantity", "reference", *heads], quantities)))
+    return (studies.table(["problem", "label", *EFFORT, "largest deviation, %"], effort),
+            studies.table(["problem", "quantity", "reference", *heads], quantities))
 
 
 def ablation(measured, labels):
@@ -491,7 +491,7 @@ def parser():
     found.add_argument("--compare", nargs="+", metavar="LABEL", help="run nothing; print the runs of these labels")
     found.add_argument("--reference", type=pathlib.Path, default=REFERENCE, help="file of the reference values")
     found.add_argument("--store", action="store_true", help="put the values of the runs into the reference")
-    found.add_argument("--write", action="store_true", help="put the tables into docs/reports/contact.md")
+    found.add_argument("--write", action="store_true", help="put the table of the effort into docs/reports/contact.md")
     found.add_argument("--ablation", action="store_true",
                        help="put the effort of the labels of --compare into docs/reports/ablation.md")
     found.add_argument("--layers", action="store_true",
@@ -530,11 +530,11 @@ def main():
     references = read_references(options.reference)
     if options.store and not options.compare:
         references = store(options, measured)
-    text = tables(measured, references)
-    print(text)
+    effort, quantities = tables(measured, references)
+    print(effort, quantities, sep="\n\n")
     jobs = [read_job(options.work / label / name / "results") for name, runs in measured.items() for label in runs]
     if options.write:
-        put_table(REPORT, "envelope", text, jobs)
+        put_table(REPORT, "envelope", effort, jobs)
     if options.ablation:
         put_table(ABLATION, "ablation", ablation(measured, labels), jobs)
 

@@ -4,7 +4,6 @@
 
     cmake --build --preset release --target dd3imp benchmark_increment_error
     tests/benchmark/increment_error.py --build build/release --work build/increments
-    tests/benchmark/increment_error.py ... --write       and put the tables into docs/reports/increments.md
 
 The runs, their limits and the errors of a run are those of increments.py, with the same folder of the runs. The error
 of an increment is its difference from the same one in equal parts. A correlation is given as that of the logarithms
@@ -17,13 +16,11 @@ from pathlib import Path
 import increments
 import numpy as np
 from envelope import Job, Results, make, studies
-from increments import BASE, REPORT, TRIALS, curve_error, folder_of, largest, outcome, reference_of
+from increments import BASE, TRIALS, curve_error, folder_of, largest, outcome, reference_of
 from problems import BENDING, merged, of_file, without
 
 from dd3.errors import Problem, run
-from dd3.pages import put_table
 from dd3.programs import launch, made_folder
-from dd3.run import read_job
 
 PARTS = 8  # of an increment
 LEAST = 6  # values of a correlation
@@ -165,7 +162,7 @@ def missed_table(options, found):
 
 def penalty_table(options):
     """Return the table of forces of mesh (a) at 17 mm with the mixed formulation, by limits and penalty."""
-    lines, jobs = [], []
+    lines = []
     for title, blocks in SETTINGS.items():
         curves = []
         for penalty in PENALTIES:
@@ -175,13 +172,12 @@ def penalty_table(options):
             make(options, job, folder, blocks)
             travels, curve = Results(folder / "results").resampled("punch_fz", *FALL)
             curves.append(curve)
-            jobs.append(read_job(folder / "results"))
         spread = 100*np.ptp(curves, axis=0)/np.mean(curves, axis=0)
         worst, place = np.argmax(spread), np.argmin(np.abs(travels - 17.0))
         lines.append([title, *(f"{curve[place]:.0f}" for curve in curves), f"{spread[place]:.2f}",
                       f"{spread[worst]:.2f} at {travels[worst]:.1f} mm"])
     return studies.table(["limits", *(f"p = {penalty}, N" for penalty in PENALTIES), "spread at 17 mm, %",
-                          "largest, %"], lines), jobs
+                          "largest, %"], lines)
 
 
 def global_table(options, names):
@@ -235,7 +231,6 @@ def parser():
     found.add_argument("--work", required=True, type=made_folder, help="folder of the runs")
     found.add_argument("--problems", nargs="+", choices=NAMES, default=NAMES, metavar="NAME",
                        help=f"problems (all): {', '.join(NAMES)}")
-    found.add_argument("--write", action="store_true", help="put the tables into docs/reports/increments.md")
     found.add_argument("--seconds", type=float, default=1800.0, help="processor time of a run, s (1800)")
     found.set_defaults(again=False)
     return found
@@ -251,13 +246,9 @@ def main():
     tables = {"estimate": local_table(usual), "estimate of all levels": local_table(pooled),
               "missed": missed_table(options, usual), "sum of the estimate": global_table(options, options.problems),
               "control": control_table(options, options.problems)}
-    jobs = [read_job(folder_of(options, lines, name) / "results") for lines in VARIED for name in options.problems]
-    tables["penalties"], more = penalty_table(options)
-    jobs += more
+    tables["penalties"] = penalty_table(options)
     for name, text in tables.items():
         print(f"{name}\n\n{text}", end="\n\n")
-        if options.write:
-            put_table(REPORT, name, text, jobs)
 
 
 if __name__ == "__main__":

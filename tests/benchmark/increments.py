@@ -3,7 +3,7 @@
 """Measure the error per increment: forming problems with each accuracy of *LIMITS and with each limit alone.
 
     tests/benchmark/increments.py --program build/release/dd3imp --work build/increments
-    tests/benchmark/increments.py ... --write            and put the tables into docs/reports/increments.md
+    tests/benchmark/increments.py ... --write            and put the sums into docs/reports/increments.md
     tests/benchmark/increments.py ... --problems square_cup_15 --limits "rotation = 3" "rotation = 3; depth = 0.2"
 
 --limits gives lines of *LIMITS in place of the levels. Each run is kept in the folder of its limits and problem, and
@@ -201,7 +201,7 @@ def parser():
     found.add_argument("--problems", nargs="+", choices=TRIALS, default=list(TRIALS), metavar="NAME",
                        help=f"problems (all): {', '.join(TRIALS)}")
     found.add_argument("--limits", nargs="+", metavar="LINES", help="lines of *LIMITS, separated by semicolons")
-    found.add_argument("--write", action="store_true", help="put the tables into docs/reports/increments.md")
+    found.add_argument("--write", action="store_true", help="put the sums into docs/reports/increments.md")
     found.add_argument("--seconds", type=float, default=1800.0, help="processor time of a run, s (1800)")
     found.set_defaults(again=False)
     return found
@@ -215,13 +215,12 @@ def main():
         print(*table(options, options.limits, options.problems)[:2], sep="\n\n")
         return
     quick = [name for name in options.problems if name not in SLOW]
-    for names, sets, problems in ((("levels", "problems"), [f"accuracy = {level}" for level in LEVELS],
-                                   options.problems), (("limits", "limits and problems"), [BASE, *SINGLE], quick)):
-        *texts, jobs = table(options, sets, problems)
-        for name, text in zip(names, texts, strict=True):
-            print(text, end="\n\n")
-            if options.write:
-                put_table(REPORT, name, text, jobs)
+    for name, sets, problems in (("levels", [f"accuracy = {level}" for level in LEVELS], options.problems),
+                                 ("limits", [BASE, *SINGLE], quick)):
+        together, each, jobs = table(options, sets, problems)
+        print(together, each, sep="\n\n", end="\n\n")
+        if options.write:
+            put_table(REPORT, name, together, jobs)
 
 
 if __name__ == "__main__":

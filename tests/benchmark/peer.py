@@ -8,7 +8,7 @@
 One half of a strip in plane strain, 40 x 1 x 1 mm, is bent to a U without a blank-holder. Both codes get the same
 nodes, the same pairs of flow stress and plastic strain, and the same profiles of the tools: exact arcs in dd3imp,
 facets with their nodes on the arcs in CalculiX. Each chooses its increments; one thread. CalculiX is the package
-calculix-ccx of Debian. --write puts the tables into docs/reports/speed.md.
+calculix-ccx of Debian. --write puts the table without friction into docs/reports/speed.md.
 """
 
 import argparse
@@ -304,17 +304,16 @@ def tables(ours, theirs, version):
 
 
 def with_friction(arguments):
-    """Run both with friction on two meshes; return the table and the run.json of dd3imp."""
-    rows, jobs = [], []
+    """Run both with friction on two meshes; return the table."""
+    rows = []
     arguments.friction = FRICTION
     for arguments.columns in (160, 80):
         for name, run_it in (("dd3imp", run_dd3imp), ("CalculiX", run_calculix)):
             good, tried, iterations, cpu, curve = run_it(arguments)
             rows.append([f"{arguments.columns} columns, {name}", str(good), str(tried), str(iterations), f"{cpu:.1f}",
                          ", ".join(f"{force_at(curve, place):.2f}" for place in (1, 3, 6, 9))])
-        jobs.append(read_job(arguments.work / f"dd3imp_{arguments.columns}"))
     return table(["", "increments", "attempts", "iterations", "processor time, s",
-                  "punch force at 1, 3, 6, 9 mm, N"], rows), jobs
+                  "punch force at 1, 3, 6, 9 mm, N"], rows)
 
 
 def command_line():
@@ -346,9 +345,7 @@ def main():
     print(text)
     if arguments.write:
         put_table(PAGE, "CalculiX", text, [read_job(arguments.work / f"dd3imp_{arguments.columns}")])
-        text, jobs = with_friction(arguments)
-        print(text)
-        put_table(PAGE, "CalculiX, friction", text, jobs)
+        print(with_friction(arguments))
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 """Measure runs on several processes: time and memory, the same results, what is exchanged, the iterative solver.
 
     tests/benchmark/processes.py --program build/release/dd3imp --parallel build/petsc/dd3imp --work build/processes
-    tests/benchmark/processes.py ... --write                  and put the tables into docs/reports/processes.md
+    tests/benchmark/processes.py ... --write                  and put that of the cost into docs/reports/processes.md
 
 The serial program has to be built with its benchmarks, in the same folder.
 """
@@ -140,14 +140,14 @@ def main():
     parser = parser_of_runs(__doc__)
     parser.add_argument("--parallel", required=True, type=find_program, help="the program for several processes")
     parser.add_argument("--mpirun", default="mpirun", help="the command that starts several processes")
-    parser.add_argument("--write", action="store_true", help="put the tables into the report")
+    parser.add_argument("--write", action="store_true", help="put the table of the cost into the report")
     options = parser.parse_args()
     found = {"results": results(options), "cost": cost(options), "solvers": solvers(options)}
     found["exchange"] = exchange(options), found["cost"][1]
-    for name, (content, jobs) in found.items():
+    for content, _ in found.values():
         print(f"\n{content}")
-        if options.write:
-            put_table(REPORT, name, content, jobs)
+    if options.write:
+        put_table(REPORT, "cost", *found["cost"])
 
 
 if __name__ == "__main__":

@@ -1,15 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Make the tables of docs/reports/solvers.md anew.
+"""Compare the linear solvers on systems of square cups and of the bending test: docs/reports/solvers.md.
 
     cmake --build --preset release --target benchmark_write_matrices benchmark_solvers benchmark_run_matrices
-    tests/benchmark/solvers.py --build build/release --write
+    tests/benchmark/solvers.py --build build/release
     tests/benchmark/solvers.py --build build/release --systems 800:1 800:20 20000:0 --keep systems
 
 Quarters of the square cup of speed.py. A system is that of the corrector at the first increment beyond a travel of the
 punch, mm; 0 is the clamping. Each is solved by every method. Systems found in the folder --keep are not made again.
---jobs are run to their ends, and many of their systems are solved. With --write the tables go into
-docs/reports/solvers.md.
+--jobs are run to their ends, and many of their systems are solved.
 """
 
 import argparse
@@ -22,9 +21,7 @@ import speed
 
 from dd3 import programs
 from dd3.errors import Problem, run
-from dd3.pages import put_table
 
-PAGE = speed.ROOT / "docs" / "reports" / "solvers.md"
 SYSTEMS = ["800:0", "800:1", "800:20", "1800:1", "3200:1", "7200:1", "20000:0"]
 JOBS = [speed.ROOT / "input_files" / "bending" / name for name in ("bending.dat", "fine.dat")]
 HEAD = ("| elements, unknowns | travel, mm | method | iterations | set-up, ms | factorisation, ms | solution, ms "
@@ -96,7 +93,7 @@ def table_of_job(build, job):
 
 
 def main():
-    """Measure and print, and write if asked."""
+    """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", required=True, type=Path, help="folder of the build")
     parser.add_argument("--systems", nargs="+", default=SYSTEMS, metavar="ELEMENTS:TRAVEL",
@@ -104,7 +101,6 @@ def main():
     parser.add_argument("--jobs", nargs="*", type=Path, default=JOBS,
                         help="input files (the bending test on both meshes)")
     parser.add_argument("--keep", type=Path, help="folder of the systems (a temporary one)")
-    parser.add_argument("--write", action="store_true", help="write docs/reports/solvers.md")
     arguments = parser.parse_args()
     build = arguments.build.resolve()
     with tempfile.TemporaryDirectory(prefix="dd3imp_") as folder:
@@ -114,8 +110,6 @@ def main():
     texts |= {job.name: table_of_job(build, job) for job in arguments.jobs}
     for name, text in texts.items():
         print(f"{name}:\n\n{text}\n")
-        if arguments.write:
-            put_table(PAGE, name, text, [programs.description(build / "dd3imp")])
 
 
 if __name__ == "__main__":

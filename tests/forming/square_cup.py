@@ -16,7 +16,7 @@ import studies
 
 from dd3.errors import run
 from dd3.fields import Fields
-from dd3.pages import put_table
+from dd3.pages import places, put_table
 from dd3.run import read_job
 from dd3.tables import interpolate, read_table
 
@@ -174,8 +174,8 @@ def main():
     found = tables(cups)
     print(*found.values(), sep="\n\n")
     if options.write:
-        for name, text in found.items():
-            put_table(REPORT, name, text, [read_job(cup.folder) for cup in cups.values()])
+        for name in found.keys() & places(REPORT):
+            put_table(REPORT, name, found[name], [read_job(cup.folder) for cup in cups.values()])
         draw(cups)
     sys.exit(0 if len(cups) == len(RUNS) else 1)
 

@@ -12,7 +12,7 @@ from part_set import PARTS
 
 from dd3.gmsh_session import session
 from dd3.programs import made_folder
-from dd3.tools.cad import silence
+from dd3.tools.cad_file import silence
 
 occ = gmsh.model.occ
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Parts with holes, notches and lanced forms, and the same parts made without any.
 
-    closed_set.py FOLDER          compare their closed sides and their tools; print the table of docs/parts.md
+    closed_set.py FOLDER          compare their closed sides and their tools; print their table
 """
 import contextlib
 import io
@@ -20,7 +20,7 @@ from dd3.gmsh_session import session
 from dd3.part.closed import closed_part
 from dd3.part.reading import Request, read_part
 from dd3.programs import made_folder
-from dd3.tools.cad import silence
+from dd3.tools.cad_file import silence
 from dd3.tools.patch_distance import Distance
 
 occ = gmsh.model.occ

@@ -3,7 +3,7 @@
 """A set of sheet parts, each with what a die engineer says of it.
 
     part_set.py FOLDER [NAME ...]          write them as STEP, or BREP, into a folder
-    part_set.py FOLDER --table             read them, and print the table of docs/parts.md
+    part_set.py FOLDER --table             read them, and print their table
 
 All are made here by Gmsh and OpenCASCADE.
 """
@@ -22,7 +22,7 @@ from dd3 import pages
 from dd3.gmsh_session import session
 from dd3.part.reading import Request, read_part
 from dd3.programs import made_folder
-from dd3.tools.cad import silence
+from dd3.tools.cad_file import silence
 from dd3.tools.solids import along_s, edges
 
 occ = gmsh.model.occ

@@ -12,7 +12,7 @@ from mutations import mutants
 
 from dd3.account import Account
 from dd3.errors import Problem
-from dd3.tools import cad
+from dd3.tools import cad_file
 from dd3.tools.cad_account import enter_cad
 from dd3.tools.facet_files import read_facets
 
@@ -119,7 +119,7 @@ def step_and_iges(folder):
     """Write a box as STEP and IGES."""
     gmsh.initialize()
     gmsh.option.setNumber("General.Terminal", 0)
-    with cad.silence():
+    with cad_file.silence():
         gmsh.model.occ.addBox(0, 0, 0, 10, 20, 5)
         gmsh.model.occ.synchronize()
         for ending in ("step", "igs"):

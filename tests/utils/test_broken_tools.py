@@ -12,7 +12,7 @@ import numpy as np
 from scipy.spatial import Delaunay, cKDTree
 from test_tool_surfaces import MESHES, box_distance, convert, die_triangles, make_cad, points_of, read, write_stl
 
-from dd3.tools import cad, nagata
+from dd3.tools import cad_file, nagata
 
 SIDE = (35, 25)
 
@@ -214,7 +214,7 @@ def test_crown(tmp_path):
     gmsh.initialize(interruptible=False)
     gmsh.option.setNumber("General.Terminal", 0)
     occ = gmsh.model.occ
-    with cad.silence():
+    with cad_file.silence():
         curve = occ.addBezier([occ.addPoint(*point) for point in profile])
         occ.revolve([(1, curve)], 0, 0, 0, 0, 0, 1, 2 * np.pi)
         occ.remove([(1, curve)])

@@ -16,7 +16,8 @@ from dd3.part.bends import find_bends
 from dd3.part.closed import why
 from dd3.part.openings import Opening
 from dd3.part.reading import Request, read_part
-from dd3.tools.cad import Model, overlapping, silence
+from dd3.tools.cad_file import silence
+from dd3.tools.cad_mesh import Model, overlapping
 from dd3.tools.patch_distance import Distance
 
 

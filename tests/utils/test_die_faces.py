@@ -14,7 +14,7 @@ from dd3.gmsh_session import session
 from dd3.part.reading import Request, read_part
 from dd3.tools import mitres
 from dd3.tools.binder import developable, inclined, level, of_points
-from dd3.tools.cad import silence
+from dd3.tools.cad_file import silence
 from dd3.tools.joints import find_joints, folded, kinks
 from dd3.tools.patch_distance import Distance
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from dd3.errors import Problem
-from dd3.pages import STAMP, put_table, stamp, table
+from dd3.pages import STAMP, places, put_table, stamp, table
 
 MADE = "*Commit 0123456, 2026-11-25, GCC 12.2.0, 1 thread, free machine.*\n"
 TABLE = "| x |\n|---|\n| 1 |\n"
@@ -39,6 +39,7 @@ def test_put_table(tmp_path):
     put = "<!-- table: a (b) -->\n\n| x | y |\n| --- | --- |\n| 1 | 2 |\n\n"
     before, _, rest = page.read_text(encoding="utf-8").partition(put)
     found, _, after = rest.partition("\n\n<!-- end of table -->\n")
+    assert places(page) == {"a (b)"}
     assert (before, after) == ("before\n", "after\n") and STAMP.fullmatch(found)
     with pytest.raises(Problem, match="no place for the table c"):
         put_table(page, "c", "", [job("0123456789ab", 25)])

@@ -9,7 +9,7 @@ import pytest
 from helpers import ROOT, call
 from test_tool_surfaces import box_distance, points_of, read
 
-from dd3.tools import cad, faces, plane
+from dd3.tools import cad_file, faces, plane
 from dd3.tools.joints import find_joints, folded, kinks
 from dd3.tools.solids import edges, wire
 
@@ -42,7 +42,7 @@ def parts(tmp_path_factory):
         occ.removeAllDuplicates()
         save(name)
 
-    with cad.silence():
+    with cad_file.silence():
         occ.cut([pot(21, 0, 6)], [pot(20, 1, 5)])
         save("cup")
         extruded("groove", [(-25, 20), (-25, 0), (-8, 0), (0, 8), (8, 0), (25, 0), (25, 20)], 1.5)

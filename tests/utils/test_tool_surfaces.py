@@ -11,7 +11,7 @@ import gmsh
 import numpy as np
 from helpers import ROOT, call
 
-from dd3.tools import cad
+from dd3.tools import cad_file, cad_mesh
 from dd3.tools import surface as surfaces
 from dd3.tools.joints import find_joints, folded, kinks
 
@@ -279,7 +279,7 @@ def make_cad(folder):
         occ.synchronize()
         gmsh.write(str(folder / name))
 
-    with cad.silence():
+    with cad_file.silence():
         punch()
         save("punch.step")
         text = (folder / "punch.step").read_text()
@@ -343,7 +343,7 @@ def test_cad(tmp_path, program):
     miss = np.where(z > 10, r - 50, np.where(r < 40, -z, np.hypot(r - 40, z - 10) - 10))
     assert np.abs(miss).max() < 0.002 and r.max() > 49.99 and z.max() > 59.7  # points lie within the patches
     assert "no part '9'; there are 1 " in convert(tmp_path / "punch.step", "--part", "9", expect=2)
-    with mock.patch.object(cad, "MOST_PATCHES", 1):  # of a face, which is then not divided further
+    with mock.patch.object(cad_mesh, "MOST_PATCHES", 1):  # of a face, which is then not divided further
         assert "farther than" in convert(tmp_path / "punch.step", "--tolerance", 1e-5, expect=2)
     for name in ("text.step", "text.igs", "text.brep"):
         (tmp_path / name).write_text("no tool\n")

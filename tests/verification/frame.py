@@ -37,7 +37,7 @@ class Mesh:
 class Outcome:
     """What a section gives: values, study, and pictures as pairs of a file name and a function that draws on axes.
 
-    The errors of a study are drawn from its table on the page.
+    The errors of a study are drawn from its table in values.md.
     """
 
     values: list = field(default_factory=list)
@@ -47,7 +47,7 @@ class Outcome:
 
 @dataclass
 class Section:
-    """A section of the page: `text` comes before the tables, `after` behind them; file name of the study's picture."""
+    """A section of the page: `text` comes before the table, `after` behind it; file name of the study's picture."""
 
     heading: str
     text: str

@@ -11,7 +11,7 @@ from pathlib import Path
 from bending_study.runs import FIRST, Run, differences
 from dd3.command import new_parser
 from dd3.errors import Problem
-from dd3.pages import put_table, table
+from dd3.pages import places, put_table, table
 from dd3.run import read_job
 from dd3.tables import Row, read_table, totals
 
@@ -243,7 +243,7 @@ TABLES = [travels, scatter, alone, eight, variants, costs, equal_travel, control
 
 
 def write(work: Path, document: Path) -> None:
-    """Write the tables into the document, and the number of runs and their time."""
+    """Print the tables, the number of runs and their time, and write those for which the document has a place."""
     results = Results(work)
     tables = {make.__name__: make(results) for make in TABLES}
     seconds = sum(float(row["seconds"]) for row in results.row.values())
@@ -252,7 +252,9 @@ def write(work: Path, document: Path) -> None:
                       f"{', '.join(programs)} (the first digits of its SHA-256).")
     jobs = [read_job(work / case) for case in results.row]
     for name, content in tables.items():
-        put_table(document, name, content, jobs)
+        print(f"{name}\n\n{content}\n")
+    for name in tables.keys() & places(document):
+        put_table(document, name, tables[name], jobs)
 
 
 def main(words: Sequence[str] | None = None) -> None:

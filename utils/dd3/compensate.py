@@ -51,7 +51,7 @@ from dd3.programs import find_program, made_folder
 from dd3.run import read_frame, read_job
 from dd3.sheet import AXES, Sheet
 from dd3.springback import best_fit, images, steps_with_tools
-from dd3.tools.cad import silence
+from dd3.tools.cad_file import silence
 from dd3.tools.surface import Patches, Surface, from_nodes, points_on, read_patches, write
 
 MOST_POINTS = 2000  # of the smooth function

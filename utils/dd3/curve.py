@@ -19,8 +19,8 @@ from dd3.command import new_parser
 from dd3.dxf import pieces_of_dxf
 from dd3.errors import LOG, Problem
 from dd3.gmsh_session import session
-from dd3.tools.cad import refuse_cut
 from dd3.tools.cad_account import enter_cad
+from dd3.tools.cad_file import refuse_cut
 
 MOST = 4096  # pieces of an edge
 JOIN = 1e-4  # largest gap between ends that are joined, over the size of all curves

@@ -31,6 +31,11 @@ def stamp(jobs: Iterable[Mapping[str, Any]]) -> str:
             f"{threads} thread{'s' if threads > 1 else ''}, {'shared' if shared else 'free'} machine.*")
 
 
+def places(document: Path) -> set[str]:
+    """Return the names of the tables for which a document has a place."""
+    return set(re.findall(r"<!-- table: (.*?) -->", document.read_text(encoding="utf-8")))
+
+
 def put_table(document: Path, name: str, content: str, jobs: Iterable[Mapping[str, Any]]) -> None:
     """Put a table with the stamp of its runs into a document, between the lines `<!-- table: name -->` and
     `<!-- end of table -->`."""

@@ -13,8 +13,8 @@ from dd3.account import Account
 from dd3.errors import LOG, Problem
 from dd3.gmsh_session import session
 from dd3.tools import faces as cad_faces
-from dd3.tools.cad import load, sew
 from dd3.tools.cad_account import enter_cad
+from dd3.tools.cad_file import load, sew
 from dd3.tools.facet_files import read_facets
 
 NEAR = 1e-5  # distance of nodes that are one, and of those on a plane of symmetry, over the size of the part

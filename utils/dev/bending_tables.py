@@ -20,7 +20,7 @@ from pathlib import Path
 from bending_study.runs import NOTE, Run, differences, run_once
 from dd3.errors import Problem
 from dd3.errors import run as run_main
-from dd3.pages import put_table, table
+from dd3.pages import places, put_table, table
 from dd3.programs import find_program
 from dd3.progress import each
 from dd3.run import read_job
@@ -192,8 +192,8 @@ def main():
     tables = {name: make(options.work) for name, make in TABLES.items()}
     if options.write:
         done = [read_job(options.work / name) for name, _, _ in jobs()]
-        for name, content in tables.items():
-            put_table(options.write, name, content, done)
+        for name in tables.keys() & places(options.write):
+            put_table(options.write, name, tables[name], done)
     for name, content in tables.items():
         print(f"{TABLES[name].__doc__}\n\n{content}\n")
 

@@ -79,7 +79,6 @@ PAGES = {
                      (f"tests/forming/adaptive.py{RUN}",)),
     "examples": Page(60, f"{MECHANICS} src/run/adaptivity.f90 src/sheet input_files",
                      (f"tests/forming/examples.py{RUN}",)),
-    "answers": Page(2, "src tests/answers", (f"tests/answers/run.py{RUN}",)),
     "bending_criteria": Page(2, f"{BENDING} tests/cases/bending_criteria",
                              (f"tests/benchmark/bending_criteria.py{RUN}",)),
     "bending_study": Page(25, f"{BENDING} input_files/bending_study", (
@@ -91,7 +90,7 @@ PAGES = {
     "capstan": Page(1, f"{MECHANICS} tests/cases/capstan", (f"tests/capstan/run.py{RUN}",)),
     "constants": Page(40, f"{MECHANICS} src/run/adaptivity.f90 input_files/draw_bending input_files/square_cup "
                           "tests/parallel/bent.dat tests/benchmark/constants.py",
-                      ("tests/benchmark/constants.py --work {work} --write",)),
+                      ("tests/benchmark/constants.py --work {work}",)),
     "contact": Page(8, MECHANICS, (labelled("compliant", contact=COMPLIANT) + " --write",
                                    envelope("--layers --write"))),
     "default_settings": Page(4, BENDING, (f"tests/benchmark/default_settings.py{RUN}",)),
@@ -112,7 +111,7 @@ PAGES = {
     "round_cup_aa6016": forming("round_cup_aa6016", 15),
     "solvers": Page(20, "src/linalg src/system", (
         "cmake --build {build} --target benchmark_write_matrices benchmark_solvers benchmark_run_matrices",
-        "tests/benchmark/solvers.py --build {build} --keep {work} --write")),
+        "tests/benchmark/solvers.py --build {build} --keep {work}")),
     "speed": Page(5, f"src/linalg {MECHANICS}", (
         "utils/dev/benchmark.py --program {program} --write docs/reports/speed.md input_files/bending/bending.dat "
         "input_files/bending/fine.dat",

@@ -79,7 +79,7 @@ def inside_out(program, directory):
     deck = directory.with_suffix(".dat")
     deck.write_text(text, encoding="utf-8")
     output = run(program, directory, deck)
-    check("inside out" in output, f"the reason is not named:\n{output}")
+    check("stopped E211: " in output and "inside out" in output, f"the reason is not named:\n{output}")
     last = table(directory / "status.csv")[-1]
     check(last["outcome"] == "failed" and last["worst_element"] == "1", f"status.csv ends with {last}")
     check(last["criterion"] == "", f"the criterion is {last['criterion']}")
@@ -108,7 +108,8 @@ def led_into_tool(program, directory):
     deck.write_text(text[:text.index("*PHASE")] + "*PHASE lift\n  control = load\n  trial = 0.5\n"
                     "  displace = z_max z 3\n", encoding="utf-8")
     output = run(program, directory, deck)
-    check("a prescribed motion leads a node" in output, f"the reason is another one:\n{output}")
+    check("stopped E242: " in output and "a prescribed motion leads a node" in output,
+          f"the reason is another one:\n{output}")
     check(", tool ram; try first" in output, f"the tool is not named:\n{output}")
     check(check_description(directory, 3)["outcome"]["message"] in output, "run.json has another message")
 

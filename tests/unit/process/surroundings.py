@@ -240,6 +240,37 @@ def little_memory(program, directory):
     check(done.returncode == 0, f"--check: exit code {done.returncode}")
 
 
+def machine_without_memory(program, directory):
+    """Test the warning of a job that needs more memory than /proc/meminfo says is left, in place of which a file is
+    mounted."""
+    directory.mkdir(parents=True)
+    table = directory / "meminfo"
+    table.write_text("MemAvailable:       1 kB\n", encoding="utf-8")
+    mounted = ["unshare", "--mount", "--map-root-user", "sh", "-c", 'mount --bind "$1" /proc/meminfo && shift && "$@"',
+               "sh", table]
+    if subprocess.run([*mounted, "true"], stderr=subprocess.DEVNULL, check=False).returncode != 0:
+        print("cannot mount a file over /proc/meminfo: machine_without_memory is skipped")
+        return
+    done = subprocess.run([*mounted, program, "--check", BENDING], capture_output=True, text=True, timeout=60,
+                          check=False)
+    check(done.returncode == 0 and "warning W014: the job needs about" in done.stdout + done.stderr,
+          f"exit code {done.returncode}:\n{done.stdout}{done.stderr}")
+
+
+def missing_solver(program, directory):
+    """Test that linear solvers which are not in this build are refused."""
+    directory.mkdir(parents=True)
+    listed = subprocess.check_output([program, "--help", "method"], text=True, timeout=60)
+    missing = re.findall(r"^  (\w+) .*; not in this build", listed, re.MULTILINE)
+    check("petsc_gamg" in missing or "mumps" in missing, f"all solvers are in this build:\n{listed}")
+    for method in missing:
+        deck = directory / f"{method}.dat"
+        deck.write_text(f"{TENSION.read_text(encoding='utf-8')}\n*SOLVER\n  method = {method}\n", encoding="utf-8")
+        done = subprocess.run([program, "--check", deck], capture_output=True, text=True, timeout=60, check=False)
+        check(done.returncode == 2 and "error E116: " in done.stderr and f"'{method}'" in done.stderr,
+              f"{method}: exit code {done.returncode}:\n{done.stderr}")
+
+
 def long_inputs(program, directory):
     """Test very long lines and very many keys, blocks and parameters: an answer within 20 s of processor time."""
     directory.mkdir(parents=True)
@@ -263,7 +294,7 @@ def long_inputs(program, directory):
 
 
 TESTS = (signals, kept_signals, closed_output, killed, vanished_folder, shared_folder, inputs_in_the_way,
-         little_memory, long_inputs)
+         little_memory, machine_without_memory, missing_solver, long_inputs)
 
 
 def main():

@@ -23,7 +23,7 @@ from dd3.part.profile import Profile, edges_of, extrude, faces_of, profile_of
 from dd3.part.reading import Fault, Reading
 from dd3.part.shape import Shape
 from dd3.tools.brep import Topology
-from dd3.tools.cad import silence
+from dd3.tools.cad_file import silence
 from dd3.tools.limits import limited
 
 # Relative difference of areas that are equal.

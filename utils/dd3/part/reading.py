@@ -21,7 +21,7 @@ from dd3.part.shape import Shape
 from dd3.part.sheet import Sheet, apart, is_flat, read_sheet
 from dd3.part.symmetry import symmetry_planes
 from dd3.part.units import unit_of
-from dd3.tools import cad, faces
+from dd3.tools import cad_file, faces
 from dd3.tools.cad_account import enter_cad
 
 MOST_PARTS = 8  # that a message names
@@ -96,19 +96,19 @@ def read_part(gmsh: Any, request: Request, progress: Callable[[float], None] = l
     """Return the reading of a part."""
     start = time.perf_counter()
     path = request.path
-    cad.load(gmsh, path)
+    cad_file.load(gmsh, path)
     progress(0.3)
     account = Account()
     enter_cad(path, account, len(gmsh.model.getEntities(2)))
-    notes = cad.single(gmsh) + cad.sew(gmsh, path, request.sew or request.tolerance, request.sew is not None)
+    notes = cad_file.single(gmsh) + cad_file.sew(gmsh, path, request.sew or request.tolerance, request.sew is not None)
     if request.scale != 1.0:
         gmsh.model.occ.dilate(gmsh.model.getEntities(), 0, 0, 0, *[request.scale] * 3)
         gmsh.model.occ.synchronize()
-    parts = cad.part_names(gmsh)
+    parts = cad_file.part_names(gmsh)
     progress(0.5)
-    tags = faces.chosen(gmsh, path, cad.choose(path, parts, request.parts), request.faces, False)
+    tags = faces.chosen(gmsh, path, cad_file.choose(path, parts, request.parts), request.faces, False)
     solid = set(tags) <= {abs(tag) for _, tag in gmsh.model.getBoundary(gmsh.model.getEntities(3), combined=False)}
-    gaps = cad.find_gaps(gmsh)  # shells with a gap between them are one part
+    gaps = cad_file.find_gaps(gmsh)  # shells with a gap between them are one part
     if len(parts) > 1 and not gaps and not request.parts and not request.faces:
         reading = Reading(path, unit_of(path), parts, outlined(gmsh, parts), Sheet("parts"), solid, notes=notes)
         reading.faults.append(Fault(f"{len(parts)} parts: {names_of(parts)}; --part takes the one that is to be "
@@ -144,7 +144,7 @@ def tell_faces(gmsh: Any, reading: Reading, request: Request, gaps: list[tuple[f
                                     "them in the CAD program", edges=edges))
     gaps = [gap for gap in gaps if set(gap[1:]) <= set(reading.shape.edges)]
     if gaps:
-        reading.faults.append(Fault(cad.said_of_gaps(gmsh, gaps, request.sew or request.tolerance),
+        reading.faults.append(Fault(cad_file.said_of_gaps(gmsh, gaps, request.sew or request.tolerance),
                                     edges=sorted({edge for gap in gaps for edge in gap[1:]})))
 
 

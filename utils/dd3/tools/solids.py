@@ -12,7 +12,7 @@ import gmsh
 from dd3.errors import run
 from dd3.gmsh_session import session
 from dd3.programs import made_folder
-from dd3.tools.cad import silence
+from dd3.tools.cad_file import silence
 
 
 def edges(chosen: Callable[..., Any]) -> list[int]:

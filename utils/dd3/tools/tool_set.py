@@ -14,7 +14,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from dd3.errors import Problem
-from dd3.tools import cad, no_holder, own_flange, report, sides
+from dd3.tools import cad, cad_mesh, no_holder, own_flange, report, sides
 from dd3.tools.binder import NoBinder
 from dd3.tools.die_face import INSET, Face, Reach, TooLong, consistent, estimated, even, flange, with_face
 from dd3.tools.faces import spans
@@ -85,7 +85,7 @@ def both_sides(gmsh: Any, options: ToolSettings, progress: Any
         least *= JUST
     model = cad.read_cad(gmsh, options.source, fine, progress)
     refuse_left_out(model, options)
-    if upon := cad.overlapping(gmsh, model):
+    if upon := cad_mesh.overlapping(gmsh, model):
         raise Problem(f"{options.source}: Gmsh makes no mesh of {report.named(model, np.array(sorted(upon)))} whose "
                       "patches do not lie upon each other: divide or mend them in the CAD program, or choose faces by "
                       "--faces")
@@ -110,7 +110,7 @@ def both_sides(gmsh: Any, options: ToolSettings, progress: Any
     return found[0], found[1], distance, [options.roles.get(tag, "") for tag in model.origin]
 
 
-def refuse_left_out(model: cad.Model, options: ToolSettings) -> None:
+def refuse_left_out(model: cad_mesh.Model, options: ToolSettings) -> None:
     """Refuse a choice of faces, not made by the user, that leaves out a part of what is seen from the punch."""
     if options.faces or options.taken:
         return
