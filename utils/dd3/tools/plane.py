@@ -15,7 +15,8 @@ ALONG = 4
 # What is tried, one after the other, until a mesh keeps to its borders: parts of the size; of each, Gmsh's numbers of
 # the pairing of triangles, by Blossom or a simple one, and of the exchange and shift of elements.
 SMALLER, RECOMBINED = (1.0, 0.7, 0.5), ((1, 5), (1, 0), (0, 0))
-# Relative difference of equal areas.
+# Distance of points that are one, over the size; relative difference of equal areas.
+SAME_POINT = 1e-9
 SAME_AREA = 1e-9
 
 
@@ -51,7 +52,7 @@ def flat(gmsh: Any, loops: list[list[Side]], size: float) -> np.ndarray:
     upwards."""
     for i, loop in enumerate(loops):
         corner = chords(loop)
-        if crosses(corner) or (i and not inside(corner, chords(loops[0])).all()):
+        if crosses(corner) or is_folded(corner) or (i and not inside(corner, chords(loops[0])).all()):
             raise Problem("the flange crosses itself: take a smaller --flange, or a smaller --shoulder")
     gmsh.model.add("plane")
     try:
@@ -172,6 +173,11 @@ def crosses(corner: np.ndarray) -> bool:
 
     apart = side(a[:, None], b[:, None], a[None]) * side(a[:, None], b[:, None], b[None]) < 0
     return bool((apart & apart.T).any())
+
+
+def is_folded(corner: np.ndarray) -> bool:
+    """Tell whether points of a closed line (n, 2) are one: Gmsh does not end its mesh."""
+    return bool(len(cKDTree(corner).query_pairs(SAME_POINT * float(np.ptp(corner, axis=0).max()))))
 
 
 def inside(points: np.ndarray, corner: np.ndarray) -> np.ndarray:
