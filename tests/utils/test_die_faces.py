@@ -9,6 +9,7 @@ from part_set import PARTS, block, edges, occ, pocket, write
 from scipy.spatial import cKDTree
 from test_tool_surfaces import points_of, read
 
+from dd3.curve import read_curves
 from dd3.errors import Problem
 from dd3.gmsh_session import session
 from dd3.part.reading import Request, read_part
@@ -179,6 +180,13 @@ def test_mitres(folder, tmp_path, name, corner, radius, off, faces):
     closed = over - (0, 0, travel)
     gap = np.linalg.norm(Distance(die, 4.0).nearest(closed[closed[:, 2] < -7])[0] - closed[closed[:, 2] < -7], axis=1)
     assert np.abs(gap - 1 - CLEARANCE).max() < 0.01, (gap.min(), gap.max())
+    # No curves are made of a block.
+    if name == "mitred_tray":
+        punch[..., 2] -= travel * punch[..., 3]
+        curve, = read_curves(tmp_path / "trim.txt")
+        assert "led over rounded edges, by up to 1.66 mm off the part's" in said, said
+        assert np.linalg.norm(Distance(punch, 1.0).nearest(curve)[0] - curve, axis=1).max() < 0.01
+        assert np.linalg.norm(np.diff(curve, axis=0), axis=1)[(curve[1:, :2] > (35, 25)).all(axis=1)].max() < 0.3
 
 
 def test_mitres_at_shoulder(folder, tmp_path):
