@@ -59,26 +59,40 @@ class Rim:
 
 
 def find_corners(shape: Shape, faces: list[int]) -> list[Corner]:
-    """Return the open corners of a side: stretches of its outer rim on a flat face that turn inwards, between two flat
-    walls on one side of it, from which bends or sharp edges lead to these."""
+    """Return the open corners of a side: where its outer rim turns inwards on a flat face, between two flat walls on one
+    side of it, from which bends or sharp edges lead to these."""
     loops = find_loops(shape, faces)
     rim = rim_of(shape, faces, loops[0]) if loops else None
     stretches = rim.stretches() if rim else []
     found = []
-    for k, own in enumerate(stretches):
-        floor = int(rim.face[own[0]])
-        # The turns at both ends are those from a bend, or a wall, to the floor.
-        if not is_flat(shape, floor) or rim.turn[own].sum() + rim.turn[(own[-1] + 1) % len(rim.turn)] > -MOUTH:
+    for floor, before, after, own in between_walls(shape, rim, stretches) if rim else []:
+        walls = wall_beside(shape, rim, stretches, before, -1), wall_beside(shape, rim, stretches, after, 1)
+        if walls[0] is None or walls[1] is None or not is_corner(shape, floor, walls[0][0], walls[1][0]):
             continue
-        before, after = (wall_beside(shape, rim, stretches, k, step) for step in (-1, 1))
-        if before is None or after is None or not is_corner(shape, floor, before[0], after[0]):
-            continue
-        edges = set(rim.edge[own].tolist()) | before[2] | after[2]
+        edges = set(rim.edge[own].tolist()) | walls[0][2] | walls[1][2]
         through = {tag for edge in edges for tag in shape.edges[edge].faces} - set(faces)
-        found.append(Corner(floor, (before[0], after[0]), before[1] | after[1], through,
-                            np.concatenate([before[3], after[3]]),
-                            float(angle_between(normal_of(shape, before[0]), normal_of(shape, after[0]))),
-                            shape.nodes[rim.nodes[own]].mean(axis=0)))
+        turn = angle_between(*(normal_of(shape, wall[0]) for wall in walls))
+        found.append(Corner(floor, (walls[0][0], walls[1][0]), walls[0][1] | walls[1][1], through,
+                            np.concatenate([wall[3] for wall in walls]), float(turn),
+                            shape.nodes[rim.nodes[own if len(own) else stretches[before][:1]]].mean(axis=0)))
+    return found
+
+
+def between_walls(shape: Shape, rim: Rim, stretches: list[np.ndarray]) -> list[tuple[int, int, int, np.ndarray]]:
+    """Return where a rim turns inwards beside a flat face: that face, the stretches from which the walls are found before
+    and after, and the places of the pieces on the face, none where the rim meets it at a point between two bends."""
+    found = []
+    count, total = len(stretches), len(rim.turn)
+    for k, own in enumerate(stretches):
+        face = int(rim.face[own[0]])
+        following = (own[-1] + 1) % total
+        # The turns at both ends are those from a bend, or a wall, to the face.
+        if is_flat(shape, face):
+            if rim.turn[own].sum() + rim.turn[following] < -MOUTH:
+                found.append((face, k, k, own))
+        elif rim.turn[following] < -MOUTH:
+            common = shape.neighbours[face] & shape.neighbours[int(rim.face[following])]
+            found += [(tag, (k + 1) % count, k, own[:0]) for tag in common if is_flat(shape, tag)]
     return found
 
 
