@@ -273,9 +273,9 @@ def notched_flange():
     notched(turned_solid([(0, 0), (30, 0), (32, 8), (45, 8)], 0.6, 1.5), 0, inside=40)
 
 
-def folded_cover(notch=True):
+def folded_cover(notch=True, radius=3):
     """Make a cover with walls on four sides, folded, open at its corners, and a notch in the rim of a wall."""
-    body = pocket((40, 30), 15, 1, 0, 3)
+    body = pocket((40, 30), 15, 1, 0, radius)
     corners = [(3, occ.addBox(x, y, -1, 6, 6, 20)) for x in (-41, 35) for y in (-31, 25)]
     occ.cut(body, [*corners, *([(3, occ.addBox(-5, 25, 9, 10, 10, 10))] if notch else [])])
 

@@ -12,8 +12,9 @@ from test_tool_surfaces import points_of, read
 
 from dd3.curve import read_curves
 from dd3.gmsh_session import session
+from dd3.part import corners
 from dd3.part.bends import find_bends
-from dd3.part.closed import why
+from dd3.part.closed import closed_part, why
 from dd3.part.openings import Opening
 from dd3.part.reading import Request, read_part
 from dd3.tools.cad_file import silence
@@ -91,18 +92,42 @@ def test_folded(tmp_path):
         assert "bent along lines in different directions" in why(reading.shape, upper, corner)
 
 
-def test_open_corners(tmp_path):
-    """Check that the blank of a folded cover is cut at its corners, and its tools are open there."""
-    path = part_set.write(tmp_path, ["folded_cover"])["folded_cover"]
-    call("tool", path, tmp_path / "tools")
-    outline = read_curves(tmp_path / "tools" / "blank.txt")[0]
-    assert len(read_curves(tmp_path / "tools" / "trim.txt")) == 1
-    inside = np.abs(outline[:, :2]) - np.array([45, 35])
-    assert not (inside > 0).all(axis=1).any(), outline
-    for name in ("punch", "die"):
-        points = points_of(read(tmp_path / "tools" / f"{name}.bez"), 3)[0].reshape(-1, 3)
-        in_corner = (np.abs(points[:, 0]) > 36) & (np.abs(points[:, 1]) > 26) & (points[:, 2] < -3)
-        assert not in_corner.any(), (name, points[in_corner])
+@pytest.mark.parametrize("radius", [3, 5, 0])  # with 5 mm the floor ends at the corner in a point
+def test_open_corners(tmp_path, radius):
+    """Check that walls and bends of a folded cover go on round its open corners in the tools, by the largest radius
+    that leaves the walls as they are, at one distance from each other; and that the rim of the part lies on them."""
+    path = tmp_path / "cover.step"
+    made(path, lambda: part_set.folded_cover(radius=radius))
+    said = call("tool", path, tmp_path / "tools", "--clearance", 0.1)
+    assert "closed: 4 open corners between walls, rounded by 4 and 5 mm between these" in said, said
+    punch, die = (read(tmp_path / "tools" / f"{name}.bez") for name in ("punch", "die"))
+    punch[..., 2] -= punch[..., 3] * float(said.split("travel")[1].split()[0])
+    curve, = read_curves(tmp_path / "tools" / "trim.txt")
+    if radius:  # sharp edges are rounded
+        assert np.linalg.norm(Distance(punch, 1.0).nearest(curve)[0] - curve, axis=1).max() < 0.01
+    points = points_of(punch, 5)[0].reshape(-1, 3)
+    corner = points[(points[:, :2] > (35, 25)).all(axis=1)]
+    away = np.linalg.norm(corner[:, :2] - (35, 25), axis=1)
+    assert away.max() < 4.01 and away[corner[:, 2] > corner[:, 2].max() - 1].min() > 3.99
+    below = corner[corner[:, 2] < -7]
+    gap = np.linalg.norm(Distance(die, 4.0).nearest(below)[0] - below, axis=1)
+    assert np.abs(gap - 1.1).max() < 0.01, (gap.min(), gap.max())
+
+
+def test_corners_left_open(folder, tmp_path, monkeypatch):
+    """Check that corners that stay open are told, of a solid that OpenCASCADE does not close and of a surface."""
+    def fails(*_):
+        raise RuntimeError
+
+    monkeypatch.setattr(corners, "closed_solid", fails)
+    reading, _, area, _ = upper(folder, "folded_cover_plain")
+    assert "open corners of the part, at x y z = " in reading.warnings[-1] and "OpenCASCADE" in reading.warnings[-1]
+    assert area == pytest.approx(sum(reading.shape.areas[tag] for tag in reading.direction.upper))
+    made(tmp_path / "cover.step", surface_of(part_set.folded_cover))
+    with session() as model:
+        reading = read_part(model, Request(tmp_path / "cover.step", toward=(0, 0, 1)))
+        closed_part(model, reading, reading.direction.upper)
+    assert "as the part is a surface" in reading.warnings[-1], reading.warnings
 
 
 def test_overlapping():

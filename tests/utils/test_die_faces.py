@@ -5,10 +5,11 @@ import gmsh
 import numpy as np
 import pytest
 from helpers import call
-from part_set import PARTS, occ, pocket, write
+from part_set import PARTS, block, edges, occ, pocket, write
 from scipy.spatial import cKDTree
 from test_tool_surfaces import points_of, read
 
+from dd3.curve import read_curves
 from dd3.errors import Problem
 from dd3.gmsh_session import session
 from dd3.part.reading import Request, read_part
@@ -29,10 +30,23 @@ def folder(tmp_path_factory):
     folder = tmp_path_factory.mktemp("die_faces")
     write(folder, [*NAMES, "crowned_block", "milled"])
     with session(), silence():
-        pocket((40, 30), 20, 1, 0, 5)
-        occ.synchronize()
-        gmsh.write(str(folder / "mitred_tray.step"))
+        for name, make in (("mitred_tray", lambda: pocket((40, 30), 20, 1, 0, 5)), ("mitred_flange", mitred_flange)):
+            make()
+            occ.synchronize()
+            gmsh.write(str(folder / f"{name}.step"))
+            gmsh.clear()
     return folder
+
+
+def mitred_flange():
+    """Make a tray with a flange whose fillets at floor and shoulder end in mitres."""
+    cavity, outer = block((-40, -30, -20), (80, 60, 20), 0, 5), block((-41, -31, -21), (82, 62, 21), 0, 6)
+    plate = block((-54, -44, -1), (108, 88, 1), 12, 0)
+    body = occ.cut([occ.fuse([(3, plate)], [(3, outer)])[0][0]], [(3, cavity)])[0][0][1]
+    for height, half, radius in ((0, 41, 4), (-1, 42, 3)):
+        ring = edges(lambda b, height=height, half=half: max(abs(b[2] - height), abs(b[5] - height)) < 1e-3
+                     and max(abs(b[0]), abs(b[3])) < half and max(abs(b[1]), abs(b[4])) < half - 10)
+        body = occ.fillet([body], ring, [radius])[0][1]
 
 
 def sampled(path, toward):
@@ -165,6 +179,25 @@ def test_mitres(folder, tmp_path, name, corner, radius, off, faces):
     travel = float(said.split("travel")[1].split()[0])
     closed = over - (0, 0, travel)
     gap = np.linalg.norm(Distance(die, 4.0).nearest(closed[closed[:, 2] < -7])[0] - closed[closed[:, 2] < -7], axis=1)
+    assert np.abs(gap - 1 - CLEARANCE).max() < 0.01, (gap.min(), gap.max())
+    # No curves are made of a block.
+    if name == "mitred_tray":
+        punch[..., 2] -= travel * punch[..., 3]
+        curve, = read_curves(tmp_path / "trim.txt")
+        assert "led over rounded edges, by up to 1.66 mm off the part's" in said, said
+        assert np.linalg.norm(Distance(punch, 1.0).nearest(curve)[0] - curve, axis=1).max() < 0.01
+        assert np.linalg.norm(np.diff(curve, axis=0), axis=1)[(curve[1:, :2] > (35, 25)).all(axis=1)].max() < 0.3
+
+
+def test_mitres_at_shoulder(folder, tmp_path):
+    """Check that the punch of a part whose shoulder is led around corners too ends at its walls, and the holder with
+    one gap around it."""
+    said = call("tool", folder / "mitred_flange.step", tmp_path, "--clearance", CLEARANCE)
+    assert "fillets of faces 23-26 32-35, which end in mitres, led around 4 corners, by 5 mm" in said, said
+    punch, holder = points_of(read(tmp_path / "punch.bez"), 3)[0].reshape(-1, 3), read(tmp_path / "holder.bez")
+    assert np.abs(punch[:, :2]).max(axis=0) == pytest.approx([40, 30])
+    rim = punch[punch[:, 2] > punch[:, 2].max() - 0.01] * (1, 1, 0) + (0, 0, holder[0, 0, 0, 2])
+    gap = np.linalg.norm(Distance(holder, 1.0).nearest(rim)[0] - rim, axis=1)
     assert np.abs(gap - 1 - CLEARANCE).max() < 0.01, (gap.min(), gap.max())
 
 

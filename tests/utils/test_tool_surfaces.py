@@ -11,6 +11,7 @@ import gmsh
 import numpy as np
 from helpers import ROOT, call
 
+from dd3.gmsh_session import session
 from dd3.tools import cad_file, cad_mesh
 from dd3.tools import surface as surfaces
 from dd3.tools.joints import find_joints, folded, kinks
@@ -403,3 +404,18 @@ def test_messages(tmp_path):
                         ((tmp_path / "empty.step",), "the file is empty"),
                         ((tmp_path / "part.xyz",), "unknown kind of file")):
         assert said in convert(*words, expect=2)
+
+
+def test_known_distances():
+    """Check that only faces are measured again whose patches have changed."""
+    with session() as model:
+        tag = model.model.occ.addDisk(0, 0, 0, 2, 1)
+        model.model.occ.synchronize()
+        x, y = np.meshgrid([0.0, 0.5, 1.0], [0.0, 0.5, 1.0])
+        nodes = np.stack([x, y, 0 * x + 0.01], axis=2)[None]
+        part = cad_mesh.Model(nodes=nodes, uv=nodes[..., :2].copy(), face=np.zeros(1, int), tags=[tag])
+        known = {}
+        assert np.allclose(cad_mesh.distances(model, part, surfaces.from_nodes(nodes), known=known), 0.01)
+        with mock.patch.object(cad_mesh, "closest", side_effect=AssertionError):
+            assert np.allclose(cad_mesh.distances(model, part, surfaces.from_nodes(nodes), known=known), 0.01)
+        assert np.allclose(cad_mesh.distances(model, part, surfaces.from_nodes(nodes + [0, 0, 0.01]), known=known), 0.02)

@@ -126,9 +126,10 @@ def rigid_map(mesh: Triangles, places: np.ndarray) -> np.ndarray:
         moment = sum(cotangent[:, None, None] * np.einsum(
             "mi,mj->mij", places[triangles[:, i]] - places[triangles[:, j]], corner[:, i] - corner[:, j])
             for (i, j), cotangent in zip(edges, cotangents))
-        left, _, right = np.linalg.svd(moment)
-        left[:, :, 1] *= np.sign(np.linalg.det(left @ right))[:, None]
-        turn = left @ right
+        # The closest rotation of the plane, (c, -s; s, c).
+        cosine, sine = moment[:, 0, 0] + moment[:, 1, 1], moment[:, 1, 0] - moment[:, 0, 1]
+        turn = np.stack([np.stack([cosine, -sine], axis=1), np.stack([sine, cosine], axis=1)], axis=1)
+        turn /= np.hypot(cosine, sine)[:, None, None]
         load = np.zeros((count, 2))
         for (i, j), cotangent in zip(edges, cotangents):
             pull = cotangent[:, None] * np.einsum("mij,mj->mi", turn, corner[:, i] - corner[:, j])
@@ -153,8 +154,8 @@ class Balance:
     def __post_init__(self) -> None:
         self.axes, self.side = frames(self.mesh)
         self.length = float(np.sqrt(abs(np.linalg.det(self.side)).max()))
-        inverse = np.linalg.inv(self.side)
-        gradient = np.concatenate((-inverse.sum(axis=1)[:, None], inverse), axis=1)  # of the nodes' functions
+        self.inverse = np.linalg.inv(self.side)
+        gradient = np.concatenate((-self.inverse.sum(axis=1)[:, None], self.inverse), axis=1)  # of the nodes' functions
         self.gradient = gradient
         normal = np.zeros_like(self.mesh.nodes)
         vectors = area_vectors(self.mesh.nodes, self.mesh.triangles)
@@ -170,7 +171,7 @@ class Balance:
     def strain(self, corners: np.ndarray) -> np.ndarray:
         """Return the logarithmic strains (m, 2, 2), in the axes of the triangles, of corners (m, 3, 2) in the blank."""
         flat = np.stack((corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=2)
-        back = flat @ np.linalg.inv(self.side)
+        back = flat @ self.inverse
         square = np.swapaxes(back, 1, 2) @ back
         mean = 0.5 * (square[:, 0, 0] + square[:, 1, 1])
         half = 0.5 * (square[:, 0, 0] - square[:, 1, 1])
@@ -186,7 +187,7 @@ class Balance:
 
     def forces(self, corners: np.ndarray) -> np.ndarray:
         """Return the forces (m, 3, 2) along the surface at the nodes of each triangle, over thickness and strength."""
-        flat = 0.5 * np.linalg.det(np.stack((corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=2))
+        flat = 0.5 * doubled(corners)
         pull = np.einsum("mij,mkj->mki", self.sheet.stress(self.strain(corners)), self.gradient)
         return np.asarray(flat[:, None, None] * np.einsum("mkil,mkl->mki", self.along, pull))
 
@@ -245,8 +246,13 @@ def unfolded(path: Path, balance: Balance) -> np.ndarray:
 
 def upright(mesh: Triangles, places: np.ndarray) -> bool:
     """Tell whether no triangle is turned over in the plane."""
-    a, b, c = (places[mesh.triangles[:, k]] for k in range(3))
-    return bool((np.linalg.det(np.stack((b - a, c - a), axis=2)) > 0).all())
+    return bool((doubled(places[mesh.triangles]) > 0).all())
+
+
+def doubled(corners: np.ndarray) -> np.ndarray:
+    """Return twice the areas of triangles in the plane (n, 3, 2), negative of those that are turned over."""
+    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    return np.asarray(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
 
 
 def solved(balance: Balance, places: np.ndarray) -> np.ndarray | None:

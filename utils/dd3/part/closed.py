@@ -16,7 +16,9 @@ from typing import Any
 import numpy as np
 from scipy.spatial import cKDTree
 
+from dd3.part import corners as open_corners
 from dd3.part.bends import ALONG, find_bends
+from dd3.part.corners import Corner
 from dd3.part.filling import SAME, Side
 from dd3.part.openings import Opening, curves_of, middle, openings_of
 from dd3.part.profile import Profile, edges_of, extrude, faces_of, profile_of
@@ -24,6 +26,7 @@ from dd3.part.reading import Fault, Reading
 from dd3.part.shape import Shape
 from dd3.tools.brep import Topology
 from dd3.tools.cad_file import silence
+from dd3.tools.fillets import in_words
 from dd3.tools.limits import limited
 
 # Relative difference of areas that are equal.
@@ -70,7 +73,10 @@ def closed_part(gmsh: Any, reading: Reading, faces: list[int]) -> Closed | None:
     profile = profile_of(shape, reading.sheet, reading.bends) if reading.solid else None
     if profile:
         return extruded(gmsh, reading, profile, faces, openings, curves)
-    if not openings:
+    pairs = open_corners.pairs_of(reading)
+    if not reading.solid and (found := open_corners.find_corners(shape, faces)):
+        reading.warnings.append(left_open(found, "the part is a surface: give its solid"))
+    if not openings and not pairs:
         return None
     both = [openings_of(gmsh, shape, side) for side in reading.sheet.sides]
     inside = {tuple(middle(gmsh, edge)): edge for edge in shape.edges_inside(faces)}
@@ -103,8 +109,46 @@ def closed_part(gmsh: Any, reading: Reading, faces: list[int]) -> Closed | None:
     if side.continued and (off := off_faces(gmsh, text, side.continued)) > ON_FACE * side.near:
         reading.faults.append(Fault(f"edges that go on over openings are up to {off:.3g} mm off the faces beside them: "
                                     "close the openings in the CAD program, or choose faces by --faces"))
+    if pairs:
+        text, numbers, edges, said = with_corners(gmsh, reading, (text, numbers, edges), inside, pairs)
+        notes += said
     return Closed(text, numbers, [tag for tag, number in numbers.items() if number in set(faces)], edges, openings,
                   curves, notes)
+
+
+def left_open(corners: list[Corner], reason: str) -> str:
+    """Return what is said of corners that stay open."""
+    places = "; ".join(one.said for one in corners)
+    return (f"the tools have the open corners of the part, at x y z = {places}, as {reason}. A sheet that is "
+            "drawn over them leaves the tools there: close them in the CAD program")
+
+
+def with_corners(gmsh: Any, reading: Reading, part: tuple[str, dict[int, int], dict[int, int]],
+                 inside: dict[tuple[float, ...], int], pairs: list[tuple[Corner, Corner]]
+                 ) -> tuple[str, dict[int, int], dict[int, int], list[str]]:
+    """Return the text of a solid whose open corners are closed, the numbers of its faces, and the edges of the side by
+    their numbers in the part, `inside` by their middles; and notes. It is as it was, with a warning of the reading, if
+    OpenCASCADE does not close them."""
+    text, numbers, edges = part
+    near = SAME * reading.shape.size
+    read_text(gmsh, text)
+    try:
+        with silence():
+            number, radii = open_corners.closed_solid(gmsh, numbers, pairs, reading.sheet.thickness or 0.0)
+    except Exception:  # Gmsh raises nothing more specific
+        reading.warnings.append(left_open([one for one, _ in pairs], "OpenCASCADE does not close them"))
+        return *part, []
+    known = {tag: Known(gmsh.model.occ.getMass(2, tag), np.array(gmsh.model.occ.getCenterOfMass(2, tag)),
+                        np.zeros((0, 3))) for tag in number}
+    text = written_by(gmsh)
+    read_text(gmsh, text)
+    old = numbers_of(gmsh, [tag for _, tag in gmsh.model.getEntities(2)], known, near)
+    middles = {edge: middle(gmsh, edge) for _, edge in gmsh.model.getEntities(1)}
+    wanted = {one: point for point, one in inside.items() if one in edges}
+    edges = {one: edge for one, point in wanted.items() for edge, at in middles.items()
+             if np.linalg.norm(at - point) <= near}
+    return (text, {tag: number[one] for tag, one in old.items()}, edges,
+            [f"closed: {len(pairs)} open corners between walls, rounded by {in_words(radii)} between these"])
 
 
 def why(shape: Shape, faces: list[int], opening: Opening) -> str:

@@ -122,16 +122,21 @@ def named_hole(shape: Shape, loop: Loop) -> Hole:
     return Hole(loop, "opening", tuple(size), middle)
 
 
-def find_notches(shape: Shape, faces: list[int], loop: Loop) -> list[Notch]:
-    """Return the notches of the outer rim: stretches in which it turns inwards between two corners, and goes on in
-    about its direction behind them."""
+def turns(shape: Shape, faces: list[int], loop: Loop) -> np.ndarray:
+    """Return the turn of a rim of a side at its nodes within the side, degrees, positive where it is convex."""
     own = shape.of(faces)
     corners = shape.nodes[shape.triangles[own]]
     angle = np.stack([angle_between(corners[:, (k + 1) % 3] - corners[:, k], corners[:, (k + 2) % 3] - corners[:, k])
                       for k in range(3)], axis=1)
     total = np.zeros(len(shape.nodes))
     np.add.at(total, shape.triangles[own], angle)
-    turn = 180.0 - total[loop.nodes]
+    return np.asarray(180.0 - total[loop.nodes])
+
+
+def find_notches(shape: Shape, faces: list[int], loop: Loop) -> list[Notch]:
+    """Return the notches of the outer rim: stretches in which it turns inwards between two corners, and goes on in
+    about its direction behind them."""
+    turn = turns(shape, faces, loop)
     corner = np.flatnonzero(np.abs(turn) > CORNER)
     found = []
     for inside in inward_runs(turn[corner]):
@@ -149,13 +154,20 @@ def find_notches(shape: Shape, faces: list[int], loop: Loop) -> list[Notch]:
     return found
 
 
+def edges_of_rim(shape: Shape, loop: Loop) -> np.ndarray:
+    """Return the edge of each piece of a rim, from one of its nodes to the next, -1 of a piece on none."""
+    pairs = np.sort(np.stack([loop.nodes, np.roll(loop.nodes, -1)], axis=1), axis=1)
+    weights = np.array([len(shape.nodes), 1])
+    own = np.sort(shape.pieces, axis=1) @ weights
+    order = np.argsort(own)
+    at = order[np.minimum(np.searchsorted(own, pairs @ weights, sorter=order), len(own) - 1)]
+    return np.where(own[at] == pairs @ weights, shape.piece_edge[at], -1)
+
+
 def edges_between(shape: Shape, loop: Loop, first: int, last: int) -> list[int]:
     """Return the edges of a rim between two of its nodes, by their places in it."""
     places = np.arange(first, last if last > first else last + len(loop.nodes)) % len(loop.nodes)
-    pairs = np.sort(np.stack([loop.nodes[places], np.roll(loop.nodes, -1)[places]], axis=1), axis=1)
-    count = len(shape.nodes)
-    own = np.isin(np.sort(shape.pieces, axis=1) @ [count, 1], pairs @ [count, 1])
-    return sorted(set(shape.piece_edge[own].tolist()))
+    return sorted(set(edges_of_rim(shape, loop)[places].tolist()) - {-1})
 
 
 def inward_runs(turn: np.ndarray) -> list[np.ndarray]:

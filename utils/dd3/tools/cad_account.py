@@ -6,6 +6,7 @@ such as colours, layers and dimensions, are left out, and so are items of a repr
 geometry. The faces of the file are counted against those that were read.
 """
 import re
+from functools import lru_cache
 from collections import defaultdict
 from pathlib import Path
 
@@ -44,7 +45,22 @@ def enter_cad(path: Path, account: Account, faces: int) -> None:
 
 def enter_step(path: Path, account: Account, faces: int) -> None:
     """Enter the entities of a STEP file."""
-    data = path.read_bytes()
+    kinds, lines, reached = entities_of(path.read_bytes())
+    for number, kind in kinds.items():
+        entry = account.enter(f"{path}:{lines[number]}", kind or "entity")
+        if number in reached:
+            entry.use()
+        else:
+            entry.leave("no geometry of a part")
+    count = sum(kinds[number] in FACES for number in reached)
+    if faces < count:
+        raise Problem(f"{path}: {count - faces} of the {count} faces of the file are not read: of a kind that "
+                      "OpenCASCADE does not know, or damaged; mend them in the CAD program")
+
+
+@lru_cache(maxsize=1)  # a part is read before its tools are made
+def entities_of(data: bytes) -> tuple[dict[int, str], dict[int, int], set[int]]:
+    """Return the kinds and the lines of the entities of a STEP file by their numbers, and those that make geometry."""
     first = max(data.find(b"DATA"), 0)
     # Without texts and comments, in which marks have no meaning; the lines stay.
     bare = re.sub(rb"'(?:[^']|'')*'|/\*.*?\*/", lambda text: b"\n" * text[0].count(b"\n") or b" ", data[first:],
@@ -64,17 +80,7 @@ def enter_step(path: Path, account: Account, faces: int) -> None:
             refers[number] = [int(word) for word in re.findall(rb"#(\d+)", statement[found.end():])]
         line += statement.count(b"\n")
         place += len(statement) + 1
-    reached = reach(kinds, refers)
-    for number, kind in kinds.items():
-        entry = account.enter(f"{path}:{lines[number]}", kind or "entity")
-        if number in reached:
-            entry.use()
-        else:
-            entry.leave("no geometry of a part")
-    count = sum(kinds[number] in FACES for number in reached)
-    if faces < count:
-        raise Problem(f"{path}: {count - faces} of the {count} faces of the file are not read: of a kind that "
-                      "OpenCASCADE does not know, or damaged; mend them in the CAD program")
+    return kinds, lines, reach(kinds, refers)
 
 
 def reach(kinds: dict[int, str], refers: dict[int, list[int]]) -> set[int]:

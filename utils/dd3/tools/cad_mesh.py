@@ -85,15 +85,20 @@ def collect(gmsh: Any, model: Model) -> None:
     model.nodes = xyz[place[model.labels]]
 
 
-def distances(gmsh: Any, model: Model, net: np.ndarray, shift: np.ndarray | None = None) -> np.ndarray:
+def distances(gmsh: Any, model: Model, net: np.ndarray, shift: np.ndarray | None = None,
+              known: dict[int, tuple[np.ndarray, np.ndarray]] | None = None) -> np.ndarray:
     """Return the distances of the patches from the CAD at PLACES (patch, 25), mm.
 
-    With a shift of each patch, the distances from the surface at that distance along the patches' normals.
+    With a shift of each patch, the distances from the surface at that distance along the patches' normals. `known` has
+    patches of the faces, which are not measured again as long as they are the same, with their distances; it is set.
     """
     distance = np.zeros((len(net), len(PLACES[0])))
     for index, tag in enumerate(model.tags):
         chosen = np.flatnonzero(model.face == index)
         if not len(chosen):
+            continue
+        if known and tag in known and np.array_equal(known[tag][0], net[chosen]):
+            distance[chosen] = known[tag][1]
             continue
         point = points_at(net[chosen], *PLACES)
         if shift is not None:
@@ -112,6 +117,8 @@ def distances(gmsh: Any, model: Model, net: np.ndarray, shift: np.ndarray | None
         else:
             foot = closest(gmsh, tag, point, model.uv[chosen])[0]
             distance[chosen] = np.linalg.norm(foot - point, axis=2)
+        if known is not None:
+            known[tag] = net[chosen], distance[chosen]
     return distance
 
 
@@ -244,7 +251,7 @@ def mesh_once(gmsh: Any, path: Path, model: Model, division: Division) -> list[A
         if not failed:
             collect(gmsh, model)
             model.along = directions(gmsh, model, division.regular, division.loops)
-            distance = distances(gmsh, model, from_nodes(model.nodes))
+            distance = distances(gmsh, model, from_nodes(model.nodes), known=division.measured)
             model.distance = by_face(model, distance.max(axis=1))
             division.distance = directional(model, distance)
     return failed

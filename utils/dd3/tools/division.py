@@ -40,6 +40,8 @@ class Division:
         self.last: dict[Any, float] = {}  # the distance of a face when it was divided further
         self.stagnant: defaultdict[Any, int] = defaultdict(int)
         self.distance = np.zeros((len(tags), 2))  # the distances of the faces along their first and second edges, mm
+        # Patches of the faces as they were measured last, and their distances.
+        self.measured: dict[int, tuple[np.ndarray, np.ndarray]] = {}
         self.bent: defaultdict[Any, int] = defaultdict(int)
         self.loops = {tag: self.loop(gmsh, tag) for tag in tags}
         self.turn = {}

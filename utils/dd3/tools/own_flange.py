@@ -9,9 +9,6 @@ from dd3.tools.joints import find_joints
 from dd3.tools.nagata import groups
 from dd3.tools.surface import Surface, areas_at, points_at
 
-# Roles of faces beside a flange that are a shoulder; a fillet of a sharp edge has none.
-SHOULDER = "shoulder", ""
-
 
 @dataclass
 class Trimmed:
@@ -29,11 +26,13 @@ def labels_of(surface: Surface, roles: list[str], shoulder: bool) -> set[int]:
     if not shoulder:
         return found
     joints = find_joints(surface.net)
-    pairs = np.unique(surface.face[np.stack([joints.first, joints.second]) // 4], axis=1).T
-    beside = {face for face, role in enumerate(roles) if role in SHOULDER}
+    pairs = np.unique(surface.face[np.stack([joints.first, joints.second]) // 4], axis=1).T.tolist()
+    # A fillet of a sharp edge has no role: along the flange it is a shoulder, between walls none.
+    along = {b for pair in pairs for a, b in (pair, pair[::-1]) if a in found and not roles[b]}
+    beside = along | {face for face, role in enumerate(roles) if role == "shoulder"}
     new = found
     while new:
-        new = {b for pair in pairs.tolist() for a, b in (pair, pair[::-1]) if a in new and b in beside} - found
+        new = {b for pair in pairs for a, b in (pair, pair[::-1]) if a in new and b in beside} - found
         found = found | new
     return found
 

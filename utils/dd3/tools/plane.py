@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Flat patches between curves of a horizontal plane, by Gmsh."""
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
@@ -9,13 +10,16 @@ from scipy.spatial import cKDTree
 
 from dd3.errors import Problem
 from dd3.tools.division import OPTIONS
+from dd3.tools.joints import folded
+from dd3.tools.surface import from_nodes
 
 # Elements along an outer straight side at least.
 ALONG = 4
-# What is tried, one after the other, until a mesh keeps to its borders: parts of the size; of each, Gmsh's numbers of
+# What is tried, one after the other, until a mesh keeps to its borders and has no folds: parts of the size; of each, Gmsh's numbers of
 # the pairing of triangles, by Blossom or a simple one, and of the exchange and shift of elements.
 SMALLER, RECOMBINED = (1.0, 0.7, 0.5), ((1, 5), (1, 0), (0, 0))
-# Relative difference of equal areas.
+# Distance of points that are one, over the size; relative difference of equal areas.
+SAME_POINT = 1e-9
 SAME_AREA = 1e-9
 
 
@@ -51,13 +55,26 @@ def flat(gmsh: Any, loops: list[list[Side]], size: float) -> np.ndarray:
     upwards."""
     for i, loop in enumerate(loops):
         corner = chords(loop)
-        if crosses(corner) or (i and not inside(corner, chords(loops[0])).all()):
+        if crosses(corner) or is_folded(corner) or (i and not inside(corner, chords(loops[0])).all()):
             raise Problem("the flange crosses itself: take a smaller --flange, or a smaller --shoulder")
     gmsh.model.add("plane")
+    first = None
     try:
-        corners = meshed(gmsh, loops, size)
+        for corners in meshes(gmsh, loops, size):
+            nodes = patches_of(corners, loops)
+            first = nodes if first is None else first
+            # An element with two edges on a curve that is hollow for it has an angle above 180 degrees there.
+            if not len(folded(from_nodes(nodes))):
+                return nodes
     finally:
         gmsh.model.remove()
+    if first is None:
+        raise Problem("Gmsh's mesh of the flange does not keep to its borders: take another --flange or --shoulder")
+    return first
+
+
+def patches_of(corners: np.ndarray, loops: list[list[Side]]) -> np.ndarray:
+    """Return the nodes (patch, 3, 3, 3) of patches with corners (patch, 4, 2), on the curves at these."""
     nodes = np.zeros((len(corners), 3, 3, 3))
     square = np.stack([[corners[:, 0], corners[:, 1]], [corners[:, 3], corners[:, 2]]])
     nodes[:, ::2, ::2, :2] = square.transpose(2, 0, 1, 3)
@@ -69,8 +86,9 @@ def flat(gmsh: Any, loops: list[list[Side]], size: float) -> np.ndarray:
     return nodes
 
 
-def meshed(gmsh: Any, loops: list[list[Side]], size: float) -> np.ndarray:
-    """Return the corners (element, 4, 2) of quadrilaterals between closed lines of chords; each chord has two.
+def meshes(gmsh: Any, loops: list[list[Side]], size: float) -> Iterator[np.ndarray]:
+    """Give the corners (element, 4, 2) of quadrilaterals between closed lines of chords, of one mesh after the other;
+    each chord has two.
 
     Gmsh's exchange and shift of elements takes nodes out of the border where two chords are near a line, and its
     elements may reach over a short chord between long ones.
@@ -106,8 +124,7 @@ def meshed(gmsh: Any, loops: list[list[Side]], size: float) -> np.ndarray:
         gmsh.model.mesh.generate(2)
         corners = quadrilaterals(gmsh, surface)
         if abs(sum(map(area_of, corners)) - within) <= SAME_AREA * within:
-            return corners
-    raise Problem("Gmsh's mesh of the flange does not keep to its borders: take another --flange or --shoulder")
+            yield corners
 
 
 def quadrilaterals(gmsh: Any, surface: int) -> np.ndarray:
@@ -172,6 +189,11 @@ def crosses(corner: np.ndarray) -> bool:
 
     apart = side(a[:, None], b[:, None], a[None]) * side(a[:, None], b[:, None], b[None]) < 0
     return bool((apart & apart.T).any())
+
+
+def is_folded(corner: np.ndarray) -> bool:
+    """Tell whether points of a closed line (n, 2) are one: Gmsh does not end its mesh."""
+    return bool(len(cKDTree(corner).query_pairs(SAME_POINT * float(np.ptp(corner, axis=0).max()))))
 
 
 def inside(points: np.ndarray, corner: np.ndarray) -> np.ndarray:

@@ -102,7 +102,7 @@ def make_set(options: ToolSettings, command: str) -> dict[str, report.Report]:
                 "draw it in two strokes")
         check_deck(reports[str(options.target / DRAW)], options)
         if options.curves:
-            reports[str(options.target / trim_deck.DECK)] = report.Report([f"  {'curves':<10} {len(options.curves)}"])
+            reports[str(options.target / trim_deck.DECK)] = report.Report([f"  {'curves':<10} {tools.curves.said}"])
     return reports
 
 
@@ -191,7 +191,7 @@ def write_set(tools: tool_set.ToolSet, options: ToolSettings, found: beads.Beads
     text = set_deck.deck(options, tools, found, command)
     (options.target / DRAW).write_text(text, encoding="utf-8")
     if options.curves:
-        trim_deck.write(options, tools.height)
+        trim_deck.write(options, tools.curves, tools.height)
 
 
 def say(title: str, source: Path, result: report.Report) -> None:

@@ -185,8 +185,8 @@ def write_patch(file: Any, patch: np.ndarray) -> None:
     weights = patch[..., 3]
     rational = np.ptp(weights) > EXACT * weights.max()
     file.write(f"patch {patch.shape[1] - 1} {patch.shape[0] - 1}{' rational' if rational else ''}\n")
-    for point in patch.reshape(-1, 4):
-        values = [*(point[:3] / point[3] + 0.0), point[3] / weights.flat[0]][:4 if rational else 3]
+    points = np.concatenate([patch[..., :3] / weights[..., None] + 0.0, weights[..., None] / weights.flat[0]], axis=2)
+    for values in points.reshape(-1, 4)[:, :4 if rational else 3].tolist():
         file.write(" ".join(f"{value:.12g}" for value in values) + "\n")
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from dd3.errors import Problem
-from dd3.tools import cad, cad_mesh, no_holder, own_flange, report, sides
+from dd3.tools import cad, cad_mesh, no_holder, own_flange, report, sides, trim_deck
 from dd3.tools.binder import NoBinder
 from dd3.tools.die_face import INSET, Face, Reach, TooLong, consistent, estimated, even, flange, with_face
 from dd3.tools.faces import spans
@@ -54,7 +54,7 @@ class ToolSet:
     estimated, and whether the pins need so much; what pulls at a floor, and the holes in which pins locate it; the
     blank, and the areas in plan of the tools over it, mm2; the drawing ratio, the root of the area of the blank over
     that of the punch in plan, 0 with open ends or no holder; the largest distances of the faces of punch and die from
-    the CAD, mm; lines of the report."""
+    the CAD, mm; the curves along which the part is cut; lines of the report."""
 
     surfaces: dict[str, Surface] = field(default_factory=dict)
     travel: float = 0.0
@@ -71,6 +71,7 @@ class ToolSet:
     area: dict[str, float] = field(default_factory=dict)
     ratio: float = 0.0
     distance: dict[str, np.ndarray] = field(default_factory=dict)
+    curves: trim_deck.Curves = field(default_factory=trim_deck.Curves)
     lines: list[tuple[str, str]] = field(default_factory=list)
 
 
@@ -144,6 +145,7 @@ def made(gmsh: Any, options: ToolSettings, progress: Any) -> ToolSet:
         raise Problem(f"{options.source}: the binder at the rim of the part is curved too strongly")
     notes = punch.notes + die.notes
     result = ToolSet(distance=distance, lines=[("", note) for note in notes] + face.lines)
+    result.curves = trim_deck.on_tool(punch if options.side == "punch" else die, options)
     punch, curves = with_walls(own_flange.trimmed(punch, own_flange.labels_of(punch, roles, shoulder=True)), face,
                                options)
     beside = own_flange.labels_of(die, roles, shoulder=True) - own
@@ -194,6 +196,7 @@ def without_holder(punch: Surface, die: Surface, distance: dict[str, np.ndarray]
                    options: ToolSettings) -> ToolSet:
     """Return the tools of a part that gets no binder, both sides of it with strips as wide as the blank needs."""
     result = ToolSet(distance=distance, lines=[("", note) for note in punch.notes + die.notes])
+    result.curves = trim_deck.on_tool(punch if options.side == "punch" else die, options)
     result.blank = estimated(die.net, [no_holder.outer_rim(die)[0]], result.lines, options)
     width = options.flange or no_holder.width_for(die, result.blank.border, INSET * options.thickness)
     punch, die = (no_holder.continued(tool, width) for tool in (punch, die))
