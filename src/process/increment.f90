@@ -55,6 +55,7 @@ contains
         stepper%attempt%verdict)
     if (stepper%attempt%verdict%outcome /= verdict_converged) return
     call limit_increment(model, committed, stepper)
+    stepper%refined = .false.
   end subroutine prepare_increment
 
   !> Make one attempt: the predicted state with the present r, corrected until it is in equilibrium

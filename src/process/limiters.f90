@@ -40,6 +40,10 @@ module dd3_process_limiters
   real(wp), parameter :: least_principal = 0.577_wp
   !> Largest part of what is left of a phase in an increment with viscous forces.
   real(wp), parameter :: largest_part = 0.5_wp
+  !> Part of an increment that the first one on a refined sheet makes: it brings what the transfer
+  !> has put out of balance into balance. In a whole one the iterations do not contract until much
+  !> of the step has been searched.
+  real(wp), parameter :: settling = 0.2_wp
   !> Largest motion in an increment of a tool that is withdrawn, in thicknesses of the sheet.
   real(wp), parameter :: opening_step = 2.5_wp
   !> The first motion over the height of a contact layer, in the mixed formulation over the
@@ -53,7 +57,7 @@ contains
 
   !> Set the factor r of an increment, the smallest of all bounds, eq. (18), of equal ones the
   !> first: those that r_min overrides, then the bound by earlier increments, the end of the phase
-  !> and the other limiters.
+  !> and the other limiters; of the first increment on a refined sheet a part of it.
   subroutine limit_increment(model, state, stepper)
     type(model_t), intent(in) :: model
     !> The committed state.
@@ -85,6 +89,10 @@ contains
         call end_after("layer", progress_left(state%progress))
       end if
       call end_after("output", next_output_progress(model%output, phase, state) - state%progress)
+      if (stepper%refined) then
+        attempt%part = settling
+        limit = limit_t(r=settling*limit%r, limiter="refinement")
+      end if
       if (model%part%divided) call copy_limit(0, limit)
     end associate
 

@@ -265,6 +265,7 @@ contains
       call take_up(model, run%stepper%system, run%committed, imbalance, error)
       if (allocated(error)) return
       run%trial = run%committed
+      run%stepper%refined = imbalance > 0.0_wp
       call add_change(model, run%committed, before, imbalance, again)
       call log%say(model%change(size(model%change))%report(log%phase, &
           model%phase(run%committed%phase)%control > 0))
