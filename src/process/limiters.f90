@@ -40,10 +40,6 @@ module dd3_process_limiters
   real(wp), parameter :: least_principal = 0.577_wp
   !> Largest part of what is left of a phase in an increment with viscous forces.
   real(wp), parameter :: largest_part = 0.5_wp
-  !> Part of an increment that the first one on a refined sheet makes: it brings what the transfer
-  !> has put out of balance into balance. In a whole one the iterations do not contract until much
-  !> of the step has been searched.
-  real(wp), parameter :: settling = 0.2_wp
   !> Largest motion in an increment of a tool that is withdrawn, in thicknesses of the sheet.
   real(wp), parameter :: opening_step = 2.5_wp
   !> The first motion over the height of a contact layer, in the mixed formulation over the
@@ -89,10 +85,8 @@ contains
         call end_after("layer", progress_left(state%progress))
       end if
       call end_after("output", next_output_progress(model%output, phase, state) - state%progress)
-      if (stepper%refined) then
-        attempt%part = settling
-        limit = limit_t(r=settling*limit%r, limiter="refinement")
-      end if
+      attempt%part = stepper%part
+      if (stepper%part < 1.0_wp) limit = limit_t(r=stepper%part*limit%r, limiter="refinement")
       if (model%part%divided) call copy_limit(0, limit)
     end associate
 

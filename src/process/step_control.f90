@@ -35,7 +35,7 @@ module dd3_process_step_control
     logical :: releases = .false.
     !> Strength of the viscous forces of a release, and its range, N/mm.
     real(wp) :: viscosity = 0.0_wp, viscous_range(2) = 0.0_wp
-    !> Part of the smallest bound that r is.
+    !> Part of what the limiters allow that r is.
     real(wp) :: part = 1.0_wp
     !> Whether the phase ends with the increment.
     logical :: ends_phase = .false.
@@ -59,8 +59,9 @@ module dd3_process_step_control
     type(system_t) :: system
     type(prediction_t) :: prediction
     type(attempt_t) :: attempt
-    !> Whether the sheet has been refined since the last increment, and has forces out of balance.
-    logical :: refined = .false.
+    !> Part of what the limiters allow that the next increment makes, as it is the first one on a
+    !> refined sheet.
+    real(wp) :: part = 1.0_wp
   end type stepper_t
 
   !> Factor on r after a failed attempt, and the smallest r of another one.
