@@ -185,6 +185,8 @@ module dd3_input_case
     character(len=:), allocatable :: patches
     !> Coefficient of friction.
     real(wp) :: friction = 0.0_wp
+    !> Compliance of its surface, mm/MPa.
+    real(wp) :: compliance = 0.0_wp
     !> Factors on it, size 0 for a constant coefficient.
     type(law_spec_t), allocatable :: friction_law(:)
     !> Node set of the candidates on the sheet.
