@@ -12,6 +12,11 @@
 !> not for p(g). The solution does not depend on s; the normal law of the mixed formulation is the
 !> limit h -> 0 with the penalty s.
 !>
+!> An elastic tool yields by c p along its normal, with its area compliance c: a spring in series
+!> with the layer. The gap to the surface of its file is g - c p, and the slope of the pressure in
+!> it that of the layer over 1 + c times that. The line in g is (1 + s c/A) p A, so that the root
+!> of the rigid tool stands with (1 + s c/A) p_0. Friction and slip are those of the rigid tool.
+!>
 !> Friction sticks elastically: T lambda = tau + k T w with the tangential force tau of the
 !> committed state, rotated with the normal, the slip w since then, and k = (p_0 + p) A/h with p of
 !> the committed state: the elastic slip is below mu h. The force whose tangential part is compared
@@ -26,7 +31,8 @@ module dd3_contact_compliant
       status_slip, status_stick, traction_t
   implicit none
   private
-  public :: layer_t, new_layer, fraction_of, layer_gap, gap_under_force, layer_energy
+  public :: layer_t, new_layer, fraction_of, layer_gap, gap_under_force, place_under_force
+  public :: layer_energy
   public :: compliant_operator, rotated
 
   !> Pressure p_0 over Young's modulus; half of the height is left at p_0/2. A holder's pressure is
@@ -43,11 +49,13 @@ module dd3_contact_compliant
     real(wp) :: reference_force = 0.0_wp
     !> Scale s, N/mm.
     real(wp) :: scale = 0.0_wp
+    !> Compliance c/A of the tool in series, mm/N; 0 for a rigid one.
+    real(wp) :: compliance = 0.0_wp
   end type layer_t
 
 contains
 
-  !> Make the layer at a node.
+  !> Make the layer of a rigid tool at a node.
   pure type(layer_t) function new_layer(height, thickness, stiffness) result(self)
     !> Height over the thickness of the sheet.
     real(wp), intent(in) :: height
@@ -59,13 +67,14 @@ contains
     self%scale = scale_fraction*stiffness
   end function new_layer
 
-  !> Return a layer of a fraction of the area, with the same scale.
+  !> Return a layer of a fraction of the area, positive, with the same scale.
   pure type(layer_t) function fraction_of(layer, fraction) result(self)
     type(layer_t), intent(in) :: layer
     real(wp), intent(in) :: fraction
 
     self = layer
     self%reference_force = fraction*layer%reference_force
+    self%compliance = layer%compliance/max(fraction, tiny(1.0_wp))
   end function fraction_of
 
   !> Return the gap under a pressure over the height of the layer.
@@ -76,7 +85,7 @@ contains
     layer_gap = part_left(pressure/(reference_pressure*young))
   end function layer_gap
 
-  !> Return the gap under a normal force, mm.
+  !> Return the gap that a normal force leaves in the layer, mm.
   pure real(wp) function gap_under_force(layer, force)
     type(layer_t), intent(in) :: layer
     !> Positive in compression, N.
@@ -84,6 +93,16 @@ contains
 
     gap_under_force = layer%height*part_left(force/layer%reference_force)
   end function gap_under_force
+
+  !> Return the gap to the surface of the tool without force at which the normal force acts, mm;
+  !> negative where the tool yields by more than the layer leaves.
+  pure real(wp) function place_under_force(layer, force)
+    type(layer_t), intent(in) :: layer
+    !> Positive in compression, N.
+    real(wp), intent(in) :: force
+
+    place_under_force = gap_under_force(layer, force) - layer%compliance*force
+  end function place_under_force
 
   !> Return the part of the layer that is left at a pressure over p_0, the smaller root of
   !> x^2 - (2 + p) x + 1.
@@ -93,7 +112,7 @@ contains
     part_left = 2.0_wp/(2.0_wp + pressure + sqrt(pressure*(pressure + 4.0_wp)))
   end function part_left
 
-  !> Return the energy stored in the layer under a normal force, mJ.
+  !> Return the energy stored in the layer and in the tool under a normal force, mJ.
   pure real(wp) function layer_energy(layer, force)
     type(layer_t), intent(in) :: layer
     !> Positive in compression, N.
@@ -103,7 +122,8 @@ contains
 
     left = part_left(max(force, 0.0_wp)/layer%reference_force)
     layer_energy = layer%reference_force*layer%height &
-        *(0.5_wp*(1.0_wp - left)*(left - 3.0_wp) - log(left))
+        *(0.5_wp*(1.0_wp - left)*(left - 3.0_wp) - log(left)) &
+        + 0.5_wp*layer%compliance*max(force, 0.0_wp)**2
   end function layer_energy
 
   !> Return a vector rotated with the normal, about the axis at right angles to both normals.
@@ -122,7 +142,8 @@ contains
   pure subroutine compliant_operator(layer, normal, gap, dnormal, lambda, committed, slip, &
       friction, sliding, status, force, d, e, gap_gradient)
     type(layer_t), intent(in) :: layer
-    !> Outward unit normal of the tool, gap, mm, and gradient of the normal, 1/mm.
+    !> Outward unit normal of the tool, gap to its surface without force, mm, and gradient of the
+    !> normal, 1/mm.
     real(wp), intent(in) :: normal(3), gap, dnormal(3, 3)
     !> Contact force, that of the committed state, rotated with the normal, N; slip since then, mm.
     real(wp), intent(in) :: lambda(3), committed(3), slip(3)
@@ -138,7 +159,7 @@ contains
     type(traction_t) :: traction
     type(friction_limit_t) :: limit
     real(wp) :: gradient(3)
-    real(wp) :: line, left, slope, weight, committed_normal, stick, scale, memory
+    real(wp) :: line, left, softened, slope, weight, committed_normal, stick, scale, memory
     real(wp) :: tangential(3)
 
     force = 0.0_wp
@@ -151,10 +172,13 @@ contains
         return
       end if
       ! The part of the layer that is left at the intersection: the root below 1 of
-      ! (f - s h) x^2 - (2 f - line) x + f.
-      left = 2.0_wp*f/(2.0_wp*f - line + sqrt((2.0_wp*f - line)**2 - 4.0_wp*f*(f - s_h)))
+      ! (f - s h) x^2 - (2 f - line) x + f, with (1 + s c/A) f in place of f.
+      softened = (1.0_wp + layer%scale*layer%compliance)*f
+      left = 2.0_wp*softened/(2.0_wp*softened - line &
+          + sqrt((2.0_wp*softened - line)**2 - 4.0_wp*softened*(softened - s_h)))
       sigma_n%value = -f*(1.0_wp - left)**2/left
       slope = f/layer%height*(1.0_wp/left**2 - 1.0_wp)
+      slope = slope/(1.0_wp + layer%compliance*slope)
     end associate
     gradient = normal
     if (present(gap_gradient)) gradient = gap_gradient

@@ -178,7 +178,7 @@ module dd3_input_case
     type(block_t) :: source
   end type material_spec_t
 
-  !> A rigid tool.
+  !> A tool.
   type :: tool_spec_t
     character(len=:), allocatable :: name
     !> Path of its surface file, relative to the working directory.
@@ -187,6 +187,8 @@ module dd3_input_case
     real(wp) :: friction = 0.0_wp
     !> Factors on it, size 0 for a constant coefficient.
     type(law_spec_t), allocatable :: friction_law(:)
+    !> Compliance of the surface, mm/MPa.
+    real(wp) :: compliance = 0.0_wp
     !> Node set of the candidates on the sheet.
     character(len=:), allocatable :: contact
     !> Initial offset, mm.

@@ -44,6 +44,7 @@ contains
       if (case%trim(i)%source%valid) call check_trim(case%trim(i)%source, errors)
     end do
     call check_history_names(case, errors)
+    call check_compliance(case, errors)
     do i = 1, case%deck%n_block
       if (.not. case%deck%block(i)%valid) cycle
       select case (case%deck%block(i)%keyword)
@@ -266,6 +267,21 @@ contains
           "formulation = compliant, or points = 1 in *CONTACT", code="E124")
     end if
   end subroutine check_contact
+
+  !> Report elastic tools where a phase has the mixed formulation of the contact.
+  subroutine check_compliance(case, errors)
+    type(case_t), intent(in) :: case
+    type(error_list_t), intent(inout) :: errors
+
+    integer :: i
+
+    if (.not. any([(case%phase(i)%contact%mixed, i=1, size(case%phase))])) return
+    do i = 1, size(case%tool)
+      if (case%tool(i)%compliance > 0.0_wp) call errors%push_input( &
+          case%tool(i)%source%at("compliance"), "the mixed formulation of the contact has no "// &
+          "elastic tools", "formulation = compliant in all phases", code="E250")
+    end do
+  end subroutine check_compliance
 
   !> Check the interval or the travels at which fields are written.
   subroutine check_output(case, block, errors)

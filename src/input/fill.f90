@@ -223,6 +223,7 @@ contains
     tool%source = block
     tool%patches = resolve_path(block%folder, block%word("patches"))
     tool%friction = block%number("friction")
+    tool%compliance = block%number("compliance")
     allocate (tool%friction_law(0))
     do i = 1, block%n_entry
       if (block%entry(i)%key /= "friction_law" .or. .not. block%entry(i)%valid) cycle

@@ -56,7 +56,8 @@ contains
     call add(table, "set", "named many", "A node set selected by the initial coordinates.", &
         set_keys())
     call add(table, "material", "named many required", "A material.", material_keys())
-    call add(table, "tool", "named many", "A rigid tool made of Bezier patches.", tool_keys())
+    call add(table, "tool", "named many", "A tool made of Bezier patches, rigid without "// &
+        "`compliance`.", tool_keys())
     call add(table, "drawbead", "named many", "A draw-bead: a line that restrains the sheet "// &
         "that slides across it.", drawbead_keys())
     call add(table, "contact", "once", "Settings of the contact; required if there are tools.", &

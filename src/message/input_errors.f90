@@ -133,7 +133,10 @@ contains
           "something it does not have.", "`duration`; or `speed` where the controlling "// &
           "tool has a `move`."), &
       row("E165", "heating", "A key of the heating of a material is missing, or has no effect.", &
-          "`heat_capacity` with `density`; a law `temperature`.")]
+          "`heat_capacity` with `density`; a law `temperature`."), &
+      row("E250", "elastic tool in the mixed formulation", "`compliance` is a spring in series "// &
+          "with the contact layer; the mixed formulation has no layer.", &
+          "`formulation = compliant`, or no `compliance`.")]
   end function of_job
 
 end module dd3_message_input_errors

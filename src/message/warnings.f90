@@ -231,7 +231,10 @@ contains
           "would pinch the sheet, which lies on the punch or the tool across.", "None."), &
       row("N108", "force of a locating pin", &
           "The largest force on a support with `pin` in the phase, and its mean bearing "// &
-          "pressure, which is below the yield stress of the sheet.", "None.")]
+          "pressure, which is below the yield stress of the sheet.", "None."), &
+      row("N110", "deflection of elastic tools", &
+          "Largest distance by which a tool with `compliance` yields at the end of the phase, "// &
+          "and the contact pressure there.", "None.")]
   end function notes
 
 end module dd3_message_warnings

@@ -30,6 +30,8 @@ module dd3_model_contact_data
     logical, allocatable :: candidate(:, :)
     !> Stiffness of the sheet through its thickness under each contact point, `(n_contact)`, N/mm.
     real(wp), allocatable :: contact_stiffness(:)
+    !> Area of each contact point on the sheet without strain, `(n_contact)`, mm2.
+    real(wp), allocatable :: contact_area(:)
     !> Node across the element from a node of a contact face, `(n_node)`; 0 for others.
     integer, allocatable :: opposite(:)
     !> Faces on which a tool can touch the sheet: positions in `face`.

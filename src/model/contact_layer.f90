@@ -7,7 +7,7 @@
 module dd3_model_contact_layer
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : largest_over_ranks, sum_over_ranks
-  use dd3_contact_compliant, only : gap_under_force, layer_t, new_layer
+  use dd3_contact_compliant, only : layer_t, new_layer, place_under_force
   use dd3_contact_operator, only : status_gap
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : is_normal_held, phase_t
@@ -16,7 +16,7 @@ module dd3_model_contact_layer
   use dd3_tools_tool, only : find_on_tool
   implicit none
   private
-  public :: layer_at, border_at, contact_penalty, starting_offset, held_offsets
+  public :: layer_at, deflection_at, border_at, contact_penalty, starting_offset, held_offsets
   public :: offset_factor, offset_rate, progress_left
 
   !> Part of the phase over which the layers advance.
@@ -32,15 +32,33 @@ module dd3_model_contact_layer
 
 contains
 
-  !> Return the layer at a candidate.
-  pure type(layer_t) function layer_at(model, phase, c) result(layer)
+  !> Return the layer of a tool at a candidate. An elastic tool yields by the pressure on the area
+  !> of the sheet without strain, as the layer does; it changes as the thickness does.
+  pure type(layer_t) function layer_at(model, phase, tool, c) result(layer)
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
-    integer, intent(in) :: c
+    integer, intent(in) :: tool, c
 
     layer = new_layer(phase%layer, model%thickness_at(model%contact_node(c)), &
         model%contact_stiffness(c))
+    if (model%tool(tool)%compliance > 0.0_wp) layer%compliance = &
+        model%tool(tool)%compliance/model%contact_area(c)
   end function layer_at
+
+  !> Return the distance by which the tool of a candidate yields, mm, from above: by the whole
+  !> contact force. By as much a candidate in equilibrium may lie inside the tool's surface.
+  pure real(wp) function deflection_at(model, state, c) result(deflection)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: c
+
+    deflection = 0.0_wp
+    associate (tool => state%contact%tool(c))
+      if (tool == 0) return
+      if (model%tool(tool)%compliance > 0.0_wp) deflection = model%tool(tool)%compliance &
+          *norm2(state%contact%lambda(:, c))/model%contact_area(c)
+    end associate
+  end function deflection_at
 
   !> Return the contact of a candidate beside the border of a tool: within the layer. In the mixed
   !> formulation there is none.
@@ -109,19 +127,19 @@ contains
     sums = 0.0_wp
     do c = 1, model%n_contact_fixed
       if (.not. model%candidate(tool, c)) cycle
-      layer = layer_at(model, phase, c)
+      layer = layer_at(model, phase, tool, c)
       hint = hint_t()
       call find_on_tool(model%tool(tool), state%placement(tool), &
           model%contact_point(c)%position(state%x), hint, layer%height, &
-          model%tolerance%committed_depth + state%tools%layer_offset(tool), hit, &
-          border=border_at(model, phase, c))
+          model%tolerance%committed_depth + deflection_at(model, state, c) &
+          + state%tools%layer_offset(tool), hit, border=border_at(model, phase, c))
       if (.not. hit%found) cycle
       force = 0.0_wp
       if (state%contact%tool(c) == tool .and. state%contact%status(c) /= status_gap) then
         force = max(0.0_wp, -dot_product(state%contact%lambda(:, c), hit%normal))
       end if
       missing = max(missing, layer%height - hit%distance)
-      sums = sums + force*[1.0_wp, gap_under_force(layer, force) - hit%distance]
+      sums = sums + force*[1.0_wp, place_under_force(layer, force) - hit%distance]
     end do
     call largest_over_ranks(1, missing)
     call sum_over_ranks(2, sums)
@@ -150,14 +168,14 @@ contains
     do c = 1, model%n_contact_fixed
       associate (point => model%contact_point(c))
         if (.not. all(any(phase%prescribed(:, point%node(:point%n_surface)), dim=1))) cycle
-        layer = layer_at(model, phase, c)
         do t = 1, model%n_tool
           if (.not. (model%candidate(t, c) .and. phase%active(t))) cycle
+          layer = layer_at(model, phase, t, c)
           hint = hint_t()
           call find_on_tool(model%tool(t), state%placement(t), &
               model%contact_point(c)%position(state%x), hint, layer%height, &
-              model%tolerance%committed_depth + state%tools%layer_offset(t), hit, &
-              border=border_at(model, phase, c))
+              model%tolerance%committed_depth + deflection_at(model, state, c) &
+              + state%tools%layer_offset(t), hit, border=border_at(model, phase, c))
           if (.not. hit%found) cycle
           if (.not. all([(is_normal_held(phase, point%node(i), hit%normal), &
               i=1, point%n_surface)])) cycle
@@ -165,7 +183,7 @@ contains
           if (state%contact%tool(c) == t) force = max(0.0_wp, &
               -dot_product(state%contact%lambda(:, c), &
               hit%normal))
-          offset(c) = max(offset(c), 0.0_wp, gap_under_force(layer, force) - hit%distance)
+          offset(c) = max(offset(c), 0.0_wp, place_under_force(layer, force) - hit%distance)
         end do
       end associate
     end do

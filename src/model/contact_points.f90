@@ -119,6 +119,7 @@ contains
     model%contact_node = model%contact_node(kept)
     model%candidate = model%candidate(:, kept)
     model%contact_stiffness = model%contact_stiffness(kept)
+    model%contact_area = model%contact_area(kept)
     model%candidate_of = number(model%candidate_of)
     do c = 1, size(model%face_point, 2)
       model%face_point(:, c) = number(model%face_point(:, c))
@@ -462,7 +463,7 @@ contains
     end associate
   end function areas_of_face
 
-  !> Set the stiffness of the sheet through its thickness under each point, E A/t, with its area A,
+  !> Set the area A of each point and the stiffness E A/t of the sheet through its thickness, with
   !> the thickness there, and Young's modulus of the element. A node that belongs to no face gets
   !> the mean area, and the modulus of an element that has it.
   subroutine set_stiffness(model, area)
@@ -480,9 +481,9 @@ contains
     where (element == 0) element = at_node(model%contact_node(:model%n_contact))
     mean = model%thickness**2
     if (any(area > 0.0_wp)) mean = sum(area)/real(count(area > 0.0_wp), wp)
+    model%contact_area = merge(area, mean, area > 0.0_wp)
     model%contact_stiffness = [(model%material(model%material_of(element(c)))%young &
-        *merge(area(c), mean, area(c) > 0.0_wp)/model%thickness_at(model%contact_node(c)), &
-        c=1, model%n_contact)]
+        *model%contact_area(c)/model%thickness_at(model%contact_node(c)), c=1, model%n_contact)]
   end subroutine set_stiffness
 
 end module dd3_model_contact_points

@@ -5,7 +5,7 @@ module dd3_model_contact_results
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : broadcast_reals, largest_over_ranks, rank_of_smallest, sum_over_ranks
   use dd3_contact_operator, only : status_gap
-  use dd3_model_contact_layer, only : border_at
+  use dd3_model_contact_layer, only : border_at, deflection_at
   use dd3_model_contact_points, only : nodal_areas, point_areas
   use dd3_model_model, only : model_t
   use dd3_model_outward_normals, only : nodal_normals, outward_normals
@@ -16,7 +16,8 @@ module dd3_model_contact_results
   implicit none
   private
   public :: candidate_hits, nearest_candidate, nearest_t
-  public :: contact_gaps, contact_pressures, tool_contact_t, tool_contacts, touching_tools
+  public :: contact_gaps, contact_pressures, tool_contact_t, tool_contacts, tool_deflections
+  public :: touching_tools
 
   !> Contact of a tool: area, mm2, and largest pressure, MPa.
   type :: tool_contact_t
@@ -142,8 +143,32 @@ contains
     call largest_over_ranks(size(contact), contact%pressure)
   end function tool_contacts
 
-  !> Return the gaps at the nodes, `(n_node)`, mm; at most the search distance of the phase, which
-  !> is also the value where no active tool is that near, and at a node that is no candidate.
+  !> Return the largest distance by which each tool yields, `(n_tool)`, mm: its compliance times the
+  !> pressure, at points that do not move on edges of the mesh.
+  function tool_deflections(model, state) result(deflection)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), allocatable :: deflection(:)
+
+    real(wp), allocatable :: normal(:, :)
+    integer :: c
+
+    allocate (deflection(model%n_tool), source=0.0_wp)
+    if (.not. any(model%tool%compliance > 0.0_wp)) return
+    normal = outward_normals(model, state%x)
+    do c = 1, model%n_contact_fixed
+      if (state%contact%status(c) == status_gap .or. state%contact%tool(c) == 0) cycle
+      associate (tool => state%contact%tool(c))
+        deflection(tool) = max(deflection(tool), model%tool(tool)%compliance &
+            *dot_product(normal(:, c), state%contact%lambda(:, c))/model%contact_area(c))
+      end associate
+    end do
+    call largest_over_ranks(size(deflection), deflection)
+  end function tool_deflections
+
+  !> Return the gaps at the nodes to the tools without force, `(n_node)`, mm; at most the search
+  !> distance of the phase, which is also the value where no active tool is that near, and at a node
+  !> that is no candidate.
   function contact_gaps(model, state) result(gap)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -164,7 +189,8 @@ contains
           call find_on_tool(model%tool(t), state%placement(t), &
               model%contact_point(c)%position(state%x), hint, &
               phase%search_distance, model%tolerance%committed_depth &
-              + state%tools%layer_offset(t), hit, outward(:, c), border_at(model, phase, c))
+              + deflection_at(model, state, c) + state%tools%layer_offset(t), hit, &
+              outward(:, c), border_at(model, phase, c))
           if (hit%found) gap(model%contact_node(c)) = max(gap(model%contact_node(c)), -hit%distance)
         end do
       end do

@@ -6,7 +6,7 @@ module dd3_model_energy
   use dd3_contact_compliant, only : fraction_of, layer_energy, layer_t
   use dd3_contact_operator, only : status_gap
   use dd3_element_kinematics, only : point_volumes
-  use dd3_model_contact_layer, only : border_at, layer_at
+  use dd3_model_contact_layer, only : border_at, deflection_at, layer_at
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_model_terms_list, only : dissipated_work
@@ -44,9 +44,9 @@ contains
     elastic_energy = energy(1)
   end function elastic_energy
 
-  !> Return the energy stored in the contact layers, mJ. The normal force is that along the tool's
-  !> normal: along the normal of a face of the sheet, which is not at right angles to a curved tool,
-  !> the friction would count too.
+  !> Return the energy stored in the contact layers and in elastic tools, mJ. The normal force is
+  !> that along the tool's normal: along the normal of a face of the sheet, which is not at right
+  !> angles to a curved tool, the friction would count too.
   real(wp) function contact_energy(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -65,7 +65,7 @@ contains
     do c = 1, model%n_contact
       if (state%contact%status(c) == status_gap .or. state%contact%tool(c) == 0) cycle
       associate (tool => state%contact%tool(c), phase => model%phase(state%phase))
-        layer = layer_at(model, phase, c)
+        layer = layer_at(model, phase, tool, c)
         if (model%contact_point(c)%moves) then
           call find_crossing_on_tool(model%tool(tool), state%placement(tool), &
               state%x(:, model%contact_point(c)%node(:2)), no_direction, &
@@ -77,7 +77,7 @@ contains
         hint = state%contact%hint(tool, c)
         call find_on_tool(model%tool(tool), state%placement(tool), &
             model%contact_point(c)%position(state%x), hint, layer%height, &
-            model%tolerance%committed_depth &
+            model%tolerance%committed_depth + deflection_at(model, state, c) &
             + max(state%tools%layer_offset(tool), state%start%held_offset(c)), hit, &
             border=border_at(model, phase, c))
       end associate

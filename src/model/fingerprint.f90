@@ -162,7 +162,7 @@ contains
           call digest%add(reshape(patch%homogeneous, [size(patch%homogeneous)]))
         end associate
       end do
-      call digest%add([this%friction%numbers(), this%position])
+      call digest%add([this%friction%numbers(), this%compliance, this%position])
     end associate
     call digest%add(pack(model%contact_node, model%candidate(tool, :)))
     tool_digest = digest%value()

@@ -11,6 +11,7 @@ module dd3_output_history
   use dd3_contact_operator, only : status_gap
   use dd3_linalg_tensor, only : cross
   use dd3_model_bound_nodes, only : give_to_parents
+  use dd3_model_contact_results, only : tool_deflections
   use dd3_model_model, only : model_t
   use dd3_model_reactions, only : reactions
   use dd3_model_rim, only : mean_draw_in
@@ -110,6 +111,10 @@ contains
       call add_vector(names, units, trim(model%tool(i)%name)//"_f", "N")
       names = names//","//trim(model%tool(i)%name)//"_contacts,"//trim(model%tool(i)%name)//"_depth"
       units = units//",-,mm"
+      if (model%tool(i)%compliance > 0.0_wp) then
+        names = names//","//trim(model%tool(i)%name)//"_deflection"
+        units = units//",mm"
+      end if
       if (model%tilts(i)) call add_vector(names, units, trim(model%tool(i)%name)//"_tilt_", &
           "degrees")
       if (.not. model%turns(i)) cycle
@@ -193,8 +198,10 @@ contains
     type(table_t), intent(inout) :: table
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
+    real(wp) :: deflection(model%n_tool)
     integer :: i
 
+    deflection = tool_deflections(model, state)
     call table%add_integer(state%increment)
     call table%add_text(model%phase(state%phase)%name)
     call table%add_real(state%travel)
@@ -206,6 +213,7 @@ contains
       call table%add_integer(count_over_ranks(count(state%contact%tool == i &
           .and. state%contact%status /= status_gap)))
       call table%add_real(state%observed%depth(i))
+      if (model%tool(i)%compliance > 0.0_wp) call table%add_real(deflection(i))
       if (model%tilts(i)) call table%add_reals(180.0_wp/pi*tilt_of(state%tools, i))
       if (.not. model%turns(i)) cycle
       call table%add_real(turned_angle(state, i))

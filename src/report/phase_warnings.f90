@@ -10,7 +10,8 @@ module dd3_report_phase_warnings
   use dd3_contact_compliant, only : gap_under_force
   use dd3_contact_operator, only : status_gap
   use dd3_linalg_tensor, only : identity
-  use dd3_model_contact_layer, only : layer_at
+  use dd3_model_contact_layer, only : deflection_at, layer_at
+  use dd3_model_contact_results, only : tool_deflections
   use dd3_model_energy, only : elastic_energy, energy_error
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
@@ -83,6 +84,7 @@ contains
       call notes%add_new("W116", snap_warning(model, state, elastic_energy(model, state)))
       call add_reactions(model, state, notes)
       call notes%add_new("N104", gap_note(model, state))
+      call notes%add_new("N110", deflection_note(model, state))
       if (state%phase == size(model%phase)) then
         call notes%add_new("W115", energy_warning(state, elastic_energy(model, state), &
           energy_error(model, state)))
@@ -210,7 +212,8 @@ contains
           hint = hint_t()
           call find_on_tool(model%tool(tool), state%placement(tool), x, hint, &
               model%tolerance%touch + phase%layer*model%thickness_at(model%contact_node(c)), &
-              model%tolerance%committed_depth + state%tools%layer_offset(tool), hit)
+              model%tolerance%committed_depth + deflection_at(model, state, c) &
+              + state%tools%layer_offset(tool), hit)
           if (.not. hit%found) cycle
           normal = hit%normal
         end if
@@ -310,7 +313,7 @@ contains
         if (state%contact%status(c) == status_gap) cycle
         force = norm2(state%contact%lambda(:, c))
         associate (t => state%contact%tool(c))
-          moment(t) = moment(t) + force*gap_under_force(layer_at(model, phase, c), force)
+          moment(t) = moment(t) + force*gap_under_force(layer_at(model, phase, t, c), force)
           total(t) = total(t) + force
         end associate
       end do
@@ -325,5 +328,26 @@ contains
           "': mean gap in the contact layers by force"//text(2:)
     end associate
   end function gap_note
+
+  !> Return a note on the largest distance by which elastic tools yield; empty without them.
+  function deflection_note(model, state) result(text)
+    type(model_t), intent(in) :: model
+    !> State at the end of the phase.
+    type(state_t), intent(in) :: state
+    character(len=:), allocatable :: text
+
+    real(wp) :: deflection(model%n_tool)
+    integer :: tool
+
+    text = ""
+    deflection = tool_deflections(model, state)
+    do tool = 1, model%n_tool
+      if (deflection(tool) <= 0.0_wp) cycle
+      text = text//", '"//model%tool(tool)%name//"' by "//to_text(deflection(tool), 3)// &
+          " mm at "//to_text(deflection(tool)/model%tool(tool)%compliance, 3)//" MPa"
+    end do
+    if (len(text) > 0) text = "phase '"//model%phase(state%phase)%name// &
+        "': elastic tools yield"//text(2:)
+  end function deflection_note
 
 end module dd3_report_phase_warnings

@@ -8,6 +8,7 @@ module dd3_report_tool_depth
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : broadcast_reals, rank_of_smallest, this_rank
   use dd3_linalg_tensor, only : cross
+  use dd3_model_contact_layer, only : deflection_at
   use dd3_model_contact_points, only : points_of_face
   use dd3_model_model, only : model_t
   use dd3_model_sheet_faces, only : face_normal, part_of_nine
@@ -55,6 +56,8 @@ module dd3_report_tool_depth
     real(wp) :: size = 0.0_wp, thickness = 0.0_wp
     !> Largest depth that is looked for, mm.
     real(wp) :: search_depth = 0.0_wp
+    !> Distance by which the tool yields at its corners, mm; no part of a depth.
+    real(wp) :: deflection = 0.0_wp
     !> Bounding box of the face and the space behind it within the search depth, mm.
     real(wp) :: lower(3) = 0.0_wp, upper(3) = 0.0_wp
     !> Largest component of a corner along the normal, mm.
@@ -212,6 +215,11 @@ contains
     logical :: near
 
     call set_face(face, model, state%placement(tool), model%contact_face(k), x)
+    do i = 1, 4
+      if (point(i) == 0) cycle
+      if (state%contact%tool(point(i)) == tool) face%deflection = &
+          max(face%deflection, deflection_at(model, state, point(i)))
+    end do
     call probe_patches(self, model, face, tool, near)
     if (.not. near) return
     do i = 1, 4
@@ -251,15 +259,15 @@ contains
     self%height = maxval(matmul(self%normal, self%x))
   end subroutine set_face
 
-  !> Keep a larger depth.
+  !> Keep a larger depth behind the surface as it yields.
   pure subroutine keep_larger(self, depth, x, face)
     type(tool_depth_t), intent(inout) :: self
     !> Depth and place, mm.
     real(wp), intent(in) :: depth, x(3)
     type(face_t), intent(in) :: face
 
-    if (depth <= self%depth) return
-    self%depth = depth
+    if (depth - face%deflection <= self%depth) return
+    self%depth = depth - face%deflection
     self%face = face%number
     self%x = x
   end subroutine keep_larger

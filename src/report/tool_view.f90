@@ -7,6 +7,7 @@
 module dd3_report_tool_view
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : cross
+  use dd3_model_contact_layer, only : deflection_at
   use dd3_model_model, only : model_t
   use dd3_model_outward_normals, only : nodal_normals
   use dd3_model_state, only : state_t
@@ -113,15 +114,19 @@ contains
 
     type(hint_t) :: hint
     type(hit_t) :: hit
+    real(wp) :: inside
     integer :: t
 
+    inside = depth*model%thickness_at(node)
+    if (model%candidate_of(node) > 0) inside = inside &
+        + deflection_at(model, state, model%candidate_of(node))
     allocate (self%gap(model%n_tool), source=huge(1.0_wp))
     allocate (self%slope(model%n_tool), self%normal(3, model%n_tool), source=0.0_wp)
     do t = 1, model%n_tool
       if (.not. (path%acts(t) .and. model%member(t, node))) cycle
       hint = hint_t()
       call find_on_tool(model%tool(t), state%placement(t), state%x(:, node), hint, &
-          model%tolerance%tool_search, depth*model%thickness_at(node), hit, path%normal(:, node))
+          model%tolerance%tool_search, inside, hit, path%normal(:, node))
       if (.not. hit%found) cycle
       if (dot_product(hit%normal, path%normal(:, node)) > -facing) cycle
       self%gap(t) = merge(hit%distance, 0.0_wp, hit%distance > 0.0_wp)

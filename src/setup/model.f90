@@ -137,6 +137,7 @@ contains
       if (.not. (case%tool(t)%source%valid .and. case%tool(t)%source%has("patches"))) cycle
       model%tool(t)%name = case%tool(t)%name
       call set_friction(model%tool(t)%friction, case%tool(t), errors)
+      model%tool(t)%compliance = case%tool(t)%compliance
       model%tool(t)%position = case%tool(t)%position
       call read_tool_surface(model%tool(t)%surface, case%tool(t)%patches, &
           case%tool(t)%source%at("patches"), errors)

@@ -39,7 +39,8 @@ contains
     text = ""
     do i = 1, model%n_tool
       call new_surface_report(report, model%tool(i)%surface, near_gap*model%thickness)
-      text = text//"tool '"//model%tool(i)%name//"': "//joints(model, i, report)//newline
+      text = text//"tool '"//model%tool(i)%name//"': "//joints(model, i, report)// &
+          elasticity(model, i)//newline
     end do
   end function tool_report
 
@@ -62,6 +63,22 @@ contains
       text = text//", "//counted(report%n_pole, "pole", "poles")
     end associate
   end function joints
+
+  !> Return the distance by which an elastic tool yields; empty for a rigid one.
+  function elasticity(model, tool) result(text)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: tool
+    character(len=:), allocatable :: text
+
+    !> MPa.
+    real(wp), parameter :: pressure = 100.0_wp
+
+    text = ""
+    associate (compliance => model%tool(tool)%compliance)
+      if (compliance > 0.0_wp) text = "; yields by "//to_text(pressure*compliance, 3)// &
+          " mm at "//to_text(nint(pressure))//" MPa"
+    end associate
+  end function elasticity
 
   !> Return a number with its noun.
   pure function counted(n, one, many) result(text)

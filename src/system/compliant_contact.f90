@@ -80,7 +80,7 @@ contains
     end if
     call find_candidate(contact, model, committed, trial, c, hit, slip)
     if (contact%tool(c) > 0) call evaluate_layer(contact, trial, c, &
-        layer_at(model, model%phase(trial%phase), c), hit, slip, &
+        layer_at(model, model%phase(trial%phase), contact%tool(c), c), hit, slip, &
         model%tool(contact%tool(c))%friction)
     trial%contact%status(c) = contact%status(c)
   end subroutine evaluate_point
@@ -107,7 +107,7 @@ contains
       slip = relative_displacement(committed%placement(tool), trial%placement(tool), &
           point%position(committed%x), point%position(trial%x))
       self%rise(c) = dot_product(slip, crossing%normal)
-      call evaluate_layer(self, trial, c, fraction_of(layer_at(model, phase, c), &
+      call evaluate_layer(self, trial, c, fraction_of(layer_at(model, phase, tool, c), &
           crossing%weight), crossing_hit(crossing), slip, model%tool(tool)%friction, crossing)
     end associate
     trial%contact%status(c) = self%status(c)
@@ -144,11 +144,12 @@ contains
     if (self%tool(c) == self%committed_tool(c)) committed = &
         rotated(self%committed_force(:, c), self%committed_normal(:, c), hit%normal)
     self%onset(c) = layer%height
-    self%distance(c) = gap - layer%height
     self%status(c) = status_gap
     call compliant_operator(layer, hit%normal, gap, hit%dnormal, trial%contact%lambda(:, c), &
         committed, slip, friction, sliding, self%status(c), self%force(:, c), self%d(:, :, c), &
         self%e(:, :, c), hit%gap_gradient)
+    self%distance(c) = gap - layer%compliance*dot_product(hit%normal, self%force(:, c)) &
+        - layer%height
     if (present(crossing)) call add_crossing_terms(self, c, layer, crossing, gap, &
         trial%contact%lambda(:, c), committed, slip, friction, sliding)
   end subroutine evaluate_layer
@@ -240,7 +241,8 @@ contains
       end if
       call find_committed_candidate(contact, model, committed, c, hit)
       if (contact%tool(c) > 0) call predict_layer(contact, model, committed, c, &
-          layer_at(model, model%phase(committed%phase), c), hit, touching(contact%tool(c)))
+          layer_at(model, model%phase(committed%phase), contact%tool(c), c), hit, &
+          touching(contact%tool(c)))
     end do
     !$omp end parallel do
   end subroutine predict
@@ -270,9 +272,9 @@ contains
     self%committed_tool(c) = committed%contact%tool(c)
     self%committed_normal(:, c) = crossing%normal
     self%committed_force(:, c) = committed%contact%lambda(:, c)
-    associate (phase => model%phase(committed%phase))
-      call predict_layer(self, model, committed, c, fraction_of(layer_at(model, phase, c), &
-          crossing%weight), crossing_hit(crossing), touching(self%tool(c)), crossing)
+    associate (phase => model%phase(committed%phase), tool => self%tool(c))
+      call predict_layer(self, model, committed, c, fraction_of(layer_at(model, phase, tool, c), &
+          crossing%weight), crossing_hit(crossing), touching(tool), crossing)
     end associate
   end subroutine predict_crossing
 

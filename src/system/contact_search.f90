@@ -3,7 +3,7 @@
 !> that an edge of the mesh crosses.
 module dd3_system_contact_search
   use dd3_base_kinds, only : wp
-  use dd3_model_contact_layer, only : border_at
+  use dd3_model_contact_layer, only : border_at, deflection_at
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_model_turning, only : turning_rate
@@ -82,7 +82,8 @@ contains
 
   !> Find the tool of a candidate: the nearest, or the one it is deepest in, with hysteresis. In the
   !> committed state every candidate is outside the tools, or no deeper inside than their layers lie
-  !> back; since then it cannot have come deeper inside a tool than it moved relative to it.
+  !> back and its tool yields; since then it cannot have come deeper inside a tool than it moved
+  !> relative to it.
   subroutine find_nearest_tool(self, model, committed, trial, c, position, hint, nearest)
     !> Gets the tool, 0 if none is within the search distance.
     type(contact_work_t), intent(inout) :: self
@@ -101,13 +102,14 @@ contains
     type(hit_t) :: hit
     type(placement_t) :: placement
     type(border_t) :: border
-    real(wp) :: best, distance, moved(3)
+    real(wp) :: best, distance, depth, moved(3)
     integer :: t
 
     self%tool(c) = 0
     border = border_at(model, model%phase(trial%phase), c)
     if (self%turn_limited) border%turn = self%committed_turn(c)
     best = huge(1.0_wp)
+    depth = model%tolerance%committed_depth + deflection_at(model, committed, c)
     associate (phase => model%phase(trial%phase))
       do t = 1, model%n_tool
         if (.not. (model%candidate(t, c) .and. phase%active(t))) cycle
@@ -115,8 +117,7 @@ contains
         moved = relative_displacement(committed%placement(t), placement, &
             self%committed_x(:, c), position)
         call find_on_tool(model%tool(t), placement, position, hint(t), self%search_distance, &
-            model%tolerance%committed_depth + committed%tools%layer_offset(t) + norm2(moved), hit, &
-            self%outward(:, c), border)
+            depth + committed%tools%layer_offset(t) + norm2(moved), hit, self%outward(:, c), border)
         if (.not. hit%found) cycle
         distance = hit%distance
         if (t == trial%contact%tool(c)) distance = distance - model%tolerance%hysteresis

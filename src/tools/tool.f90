@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> A rigid tool: its surface, friction and initial position, and the closest point to a point of the
-!> sheet where it is placed.
+!> A tool, rigid or with a compliance of its surface: that surface, friction and initial position,
+!> and the closest point to a point of the sheet where it is placed.
 module dd3_tools_tool
   use dd3_base_kinds, only : wp
   use dd3_contact_friction, only : friction_t
@@ -12,7 +12,7 @@ module dd3_tools_tool
   private
   public :: tool_t, find_on_tool, find_crossing_on_tool
 
-  !> A rigid tool, without its place, which the state holds.
+  !> A tool, without its place, which the state holds.
   type :: tool_t
     !> Name in the input.
     character(len=:), allocatable :: name
@@ -20,6 +20,8 @@ module dd3_tools_tool
     type(surface_t) :: surface
     !> Friction against the sheet.
     type(friction_t) :: friction
+    !> Distance over which the surface yields along its normal per pressure, mm/MPa; 0: rigid.
+    real(wp) :: compliance = 0.0_wp
     !> Initial offset of the surface's frame from the global one, mm.
     real(wp) :: position(3) = 0.0_wp
   end type tool_t

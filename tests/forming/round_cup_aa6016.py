@@ -15,6 +15,7 @@ from round_cup import ANGLES, Cup, row
 from dd3.errors import run
 from dd3.pages import put_table
 from dd3.run import read_job
+from dd3.tables import read_table
 
 DECK, REPORT, PICTURE = studies.paths("round_cup_aa6016")
 BLANK = 53.75  # radius of the blank, mm
@@ -24,6 +25,16 @@ RUNS = {"8 x 16": {"divisions": "8 16 1"}, "12 x 24": {"divisions": "12 24 1"}, 
         "8 x 16, friction 0.07": {"divisions": "8 16 1", "friction": "0.07"},
         "8 x 16, die opening 63.6 mm": {"divisions": "8 16 1", "die": "die_wide.bez"},
         "12 x 24, die opening 63.6 mm": {"divisions": "12 24 1", "die": "die_wide.bez"}}
+RING, PUNCH, STEEL, POISSON = 31.2, 30.0, 2.1e5, 0.3  # radii of the die opening and of the punch, mm; MPa
+
+
+def ring(ratio):
+    """Return the compliance of the die, mm/MPa: a ring under inner pressure, `ratio` its outer over its inner radius."""
+    return RING / STEEL * ((ratio**2 + 1) / (ratio**2 - 1) + POISSON)
+
+
+# Compliances of the die; the solid punch has PUNCH (1 - POISSON) / STEEL.
+ELASTIC = {"die of 2 radii": ring(2), "die of 1.25 radii": ring(1.25), "die of 5e-3 mm/MPa": 5e-3}
 # Heights, mm, at ANGLES, of the repository stefanSCS/PolyN, CM_Data/AA6016_CupProfiles; means of four quadrants.
 PUBLISHED = {"measured": (34.88, 34.37, 33.89, 33.47, 33.78, 34.43, 34.82),
              "POSTECH, same criterion": (34.01, 34.18, 33.96, 33.77, 33.91, 34.18, 34.08),
@@ -55,13 +66,43 @@ def main():
             jobs.append(read_job(folder))
             rows.append(row(name, cup.angles, cup.heights,
                             [*(f"{value:.3f}" for value in cup.thickness), *studies.effort(folder)]))
-    text = studies.table(["", *(f"{angle}°" for angle in ANGLES), "mean", "range", "ears", "at, degrees", "thinnest",
-                          "thickest", "increments", "iterations", "seconds"], rows)
+    heading = ["", *(f"{angle}°" for angle in ANGLES), "mean", "range", "ears", "at, degrees", "thinnest", "thickest",
+               "increments", "iterations", "seconds"]
+    text = studies.table(heading, rows)
     print(text)
-    if options.write:
+    if options.write and len(cups) == len(RUNS):
         put_table(REPORT, "heights", text, jobs)
         draw(cups)
-    sys.exit(0 if len(cups) == len(RUNS) else 1)
+    complete = elastic_tools(options, heading) and len(cups) == len(RUNS)
+    sys.exit(0 if complete else 1)
+
+
+def elastic_tools(options, heading):
+    """Make the runs with elastic tools and their table; return whether all are there."""
+    jobs, rows = [], []
+    for die, compliance in {"rigid": 0.0, **ELASTIC}.items():
+        punch = PUNCH * (1 - POISSON) / STEEL if compliance else 0.0
+        folder = studies.make(options, "elastic_" + die.replace(" ", "_").replace("/", "_"), DECK,
+                              {"divisions": "8 16 1", "levels": 0, "die_compliance": f"{compliance:.3g}",
+                               "punch_compliance": f"{punch:.3g}"})
+        if not folder:
+            continue
+        cup = Cup(folder, BLANK)
+        jobs.append(read_job(folder))
+        rows.append([*row(die, cup.angles, cup.heights, [f"{value:.3f}" for value in cup.thickness]),
+                     *(largest(folder, tool) for tool in ("die", "punch")), *studies.effort(folder)])
+    text = studies.table([*heading[:-3], "die yields by", "punch yields by", *heading[-3:]], rows)
+    print(text)
+    if options.write and len(rows) == 1 + len(ELASTIC):
+        put_table(REPORT, "elastic", text, jobs)
+    return len(rows) == 1 + len(ELASTIC)
+
+
+def largest(folder, tool):
+    """Return the largest deflection of a tool in a run as text, mm; empty if it is rigid."""
+    history = read_table(folder / "history.csv")
+    column = f"{tool}_deflection"
+    return f"{max(float(row[column]) for row in history):.3f}" if column in history[0] else ""
 
 
 if __name__ == "__main__":
