@@ -109,7 +109,7 @@ def closed_part(gmsh: Any, reading: Reading, faces: list[int]) -> Closed | None:
     if side.continued and (off := off_faces(gmsh, text, side.continued)) > ON_FACE * side.near:
         reading.faults.append(Fault(f"edges that go on over openings are up to {off:.3g} mm off the faces beside them: "
                                     "close the openings in the CAD program, or choose faces by --faces"))
-    if pairs:
+    if pairs and not reading.faults:
         text, numbers, edges, said = with_corners(gmsh, reading, (text, numbers, edges), inside, pairs)
         notes += said
     return Closed(text, numbers, [tag for tag, number in numbers.items() if number in set(faces)], edges, openings,
