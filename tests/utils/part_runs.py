@@ -26,7 +26,7 @@ from dd3.sheet import Sheet
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "parts.md"
-TITLES = ["part", "tools", "patches", "processor time, s", "increments", "cut-backs", "processor time, min",
+TITLES = ["part", "tools", "patches", "processor time, s", "thinning estimated, %", "increments", "cut-backs", "processor time, min",
           "path left, t", "off the tools, t", "thinning, %", "springback, mm", "warnings"]
 
 
@@ -39,7 +39,7 @@ def timed(words):
 
 
 def made_tools(name, work, program):
-    """Make the tools of a part with the forces that the program gives; return what it says or the error, the number of patches and the processor time, s."""
+    """Make the tools of a part with the forces that the program gives; return what it says or the error, the number of patches, the processor time, s, and the estimated thinning, per cent."""
     part = PARTS[name]
     folder, said = work / name, work / f"{name}.txt"
     if not said.exists():
@@ -51,8 +51,9 @@ def made_tools(name, work, program):
         said.write_text(f"{spent:.1f} s\n{made.stdout}\n{made.stderr}", encoding="utf-8")
     text = said.read_text(encoding="utf-8")
     patches = sum(int(count) for count in re.findall(r"made of +(\d+) patches", text))
+    estimate = re.findall(r"\n  thinning +((?:below )?[\d.]+) %", text) or [""]
     errors = re.findall(r"error: +(.*)", text)
-    return errors[0] if errors else "made" if (folder / "draw.dat").exists() else "none", patches, text.split(" ", 1)[0]
+    return errors[0] if errors else "made" if (folder / "draw.dat").exists() else "none", patches, text.split(" ", 1)[0], estimate[0]
 
 
 def drawn(name, work, program):
@@ -93,8 +94,8 @@ def main():
     write(options.work / "parts")
     rows = []
     for name in options.names or PARTS:
-        said, patches, seconds = made_tools(name, options.work, options.program)
-        row = [f"`{name}`", said, str(patches or ""), seconds]
+        said, patches, seconds, estimate = made_tools(name, options.work, options.program)
+        row = [f"`{name}`", said, str(patches or ""), seconds, estimate]
         ready = said == "made" and not options.tools
         rows.append([*row, *(drawn(name, options.work, options.program) if ready else [""] * (len(TITLES) - 4))])
         print("| " + " | ".join(rows[-1]) + " |", flush=True)

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from dd3.errors import Problem
+from dd3.tools.drawability import thinnest
 from dd3.tools.plane import crosses, inside
 from dd3.tools.surface import Surface, areas_at, grid, points_at
 from dd3.triangles import Triangles, area_vectors, prepared, rims
@@ -35,13 +36,15 @@ FULL = 0.9
 @dataclass
 class Blank:
     """Blank in plan: closed outline (n, 2), mm, anticlockwise, and whether it is cut along it or is its box; the border
-    of what is covered at the end of the draw, anticlockwise, and its points in the flat blank (m, 2), none where these
-    are not estimated."""
+    of what is covered at the end of the draw, anticlockwise, and its points in the flat blank (m, 2), the largest
+    thinning by the estimate, a fraction, and its place (3); none where these are not estimated."""
 
     outline: np.ndarray
     cut: bool
     rim: np.ndarray = field(default_factory=lambda: np.zeros((0, 2)))
     flat: np.ndarray = field(default_factory=lambda: np.zeros((0, 2)))
+    thinning: float | None = None
+    thinnest: np.ndarray = field(default_factory=lambda: np.zeros(3))
 
     @property
     def box(self) -> np.ndarray:
@@ -77,7 +80,8 @@ def blank_of(path: Path, covered: Surface, thickness: float, margin: float) -> B
     border = border if area_of(places[border]) > 0 else border[::-1]
     outline = widened(places[border], margin)
     box = np.prod(np.ptp(outline, axis=0))
-    return Blank(outline, area_of(outline) < FULL * box, mesh.nodes[border, :2], places[border])
+    return Blank(outline, area_of(outline) < FULL * box, mesh.nodes[border, :2], places[border],
+                 *thinnest(mesh, places))
 
 
 def laid_flat(path: Path, covered: Surface, thickness: float) -> tuple[Triangles, np.ndarray]:

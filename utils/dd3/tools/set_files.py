@@ -18,12 +18,11 @@ from dd3.part import setup, table
 from dd3.part.command import write_reading
 from dd3.progress import Progress
 from dd3.sheet import Sheet
-from dd3.tools import beads, pad_force, picture, report, set_deck, set_material, tool_set, trim_deck
+from dd3.tools import beads, drawability, pad_force, picture, report, set_deck, set_material, tool_set, trim_deck
 from dd3.tools.one_tool import judge_distance
 from dd3.tools.settings import DRAW, ToolSettings
 from dd3.tools.surface import write
 
-RATIO = 2.0  # drawing ratio up to which mild steel is drawn in one stroke, about
 ESTIMATE = Path()  # what `beads` is without a run
 
 
@@ -43,7 +42,7 @@ def tools_of(gmsh: Any, options: ToolSettings, progress: Progress) -> tuple[tool
     settled = settle_set(options, tool_set.SIZES)
     tools = tool_set.made(gmsh, settled, progress)
     smaller = settle_set(options, tool_set.SIZES | tool_set.SMALLER)
-    if tools.ratio <= RATIO or vars(smaller) == vars(settled):
+    if tools.ratio <= drawability.RATIO or vars(smaller) == vars(settled):
         return tools, settled
     again = tool_set.made(gmsh, smaller, progress)
     if again.ratio >= tools.ratio:
@@ -89,18 +88,15 @@ def make_set(options: ToolSettings, command: str) -> dict[str, report.Report]:
             set_pad_force(tools, options)
         found = beads_of(tools, options) if options.beads else beads.Beads()
         write_set(tools, options, found, command)
-        reports[str(options.target / DRAW)] = report.Report(
-            [f"  {'travel':<10} {tools.travel:.6g} mm", f"  {'blank':<10} {set_deck.said(options, tools.blank)}"])
-        for line in [set_material.said(options.material), *set_deck.notes(options, tools),
+        result = report.Report([f"  {'travel':<10} {tools.travel:.6g} mm",
+                                f"  {'blank':<10} {set_deck.said(options, tools.blank)}"])
+        lines, warnings = drawability.judged(tools, options.material)
+        for line in [*lines, set_material.said(options.material), *set_deck.notes(options, tools),
                      *(found.said() if options.beads else [])]:
-            reports[str(options.target / DRAW)].add(*line)
-        reports[str(options.target / DRAW)].warnings += set_material.warnings(options.material)
-        if tools.ratio > RATIO:
-            reports[str(options.target / DRAW)].warnings.append(
-                f"the drawing ratio, the root of the area of the blank over that of the punch, is {tools.ratio:.3g}: "
-                f"mild steel is drawn in one stroke up to about {RATIO:g}. Take a smaller --margin or --shoulder, or "
-                "draw it in two strokes")
-        check_deck(reports[str(options.target / DRAW)], options)
+            result.add(*line)
+        result.warnings += set_material.warnings(options.material) + warnings
+        check_deck(result, options)
+        reports[str(options.target / DRAW)] = result
         if options.curves:
             reports[str(options.target / trim_deck.DECK)] = report.Report([f"  {'curves':<10} {tools.curves.said}"])
     return reports

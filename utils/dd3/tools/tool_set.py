@@ -14,7 +14,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from dd3.errors import Problem
-from dd3.tools import cad, cad_mesh, no_holder, own_flange, report, sides, trim_deck
+from dd3.tools import cad, cad_mesh, drawability, no_holder, own_flange, report, sides, trim_deck
 from dd3.tools.binder import NoBinder
 from dd3.tools.die_face import INSET, Face, Reach, TooLong, consistent, estimated, even, flange, with_face
 from dd3.tools.faces import spans
@@ -53,8 +53,8 @@ class ToolSet:
     shoulder, that of all faces of punch and die and that of the punch, mm; force of the pad, N, 0 if it is not
     estimated, and whether the pins need so much; what pulls at a floor, and the holes in which pins locate it; the
     blank, and the areas in plan of the tools over it, mm2; the drawing ratio, the root of the area of the blank over
-    that of the punch in plan, 0 with open ends or no holder; the largest distances of the faces of punch and die from
-    the CAD, mm; the curves along which the part is cut; lines of the report."""
+    that of the punch in plan, 0 with open ends or no holder; what is below a step of the punch; the largest distances
+    of the faces of punch and die from the CAD, mm; the curves along which the part is cut; lines of the report."""
 
     surfaces: dict[str, Surface] = field(default_factory=dict)
     travel: float = 0.0
@@ -70,6 +70,7 @@ class ToolSet:
     blank: Blank = field(default_factory=lambda: Blank(np.zeros((0, 2)), False))
     area: dict[str, float] = field(default_factory=dict)
     ratio: float = 0.0
+    inner_pan: drawability.InnerPan | None = None
     distance: dict[str, np.ndarray] = field(default_factory=dict)
     curves: trim_deck.Curves = field(default_factory=trim_deck.Curves)
     lines: list[tuple[str, str]] = field(default_factory=list)
@@ -163,6 +164,7 @@ def made(gmsh: Any, options: ToolSettings, progress: Any) -> ToolSet:
     top = float(report.extent(face.surface.net[face.surface.face == len(face.surface.names) - 1])[1][2])
     over = top + options.thickness
     result.height = -top
+    result.inner_pan = drawability.inner_pan(punch, roles)
     result.travel = float(over - report.extent(punch.net)[0][2])
     others = {"punch": (punch, result.travel - top), "die": (face.surface, -top)}
     floor = np.isin(face.surface.face, [label for label, role in enumerate(roles) if role == "floor"])
