@@ -116,8 +116,8 @@ contains
     type(description_t), allocatable :: law(:)
     integer :: k
 
-    text = newline//"# Laws"//newline//newline//"`dd3imp --help law` and the page of a law have "// &
-        "its parameters with meaning, unit, bounds and"//newline//"default, and its source."// &
+    text = newline//"# Laws"//newline//newline//"`dd3imp --help law` and the page of a law have"// &
+        " its parameters with meaning, unit, bounds and"//newline//"default, and its source."// &
         newline
     do k = 1, size(kinds)
       call describe_laws(kinds(k), law)

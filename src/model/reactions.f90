@@ -31,8 +31,8 @@ contains
     force = force + model%nodal_contact_forces(state%x, state%contact%lambda, state%contact%place)
   end function unbalanced_forces
 
-  !> Return the norm of the nodal forces of the stresses, or of what is left of fading ones if that is
-  !> larger, N.
+  !> Return the norm of the nodal forces of the stresses, or of what is left of fading ones if that
+  !> is larger, N.
   real(wp) function size_of_internal_forces(model, state) result(scale)
     type(model_t), intent(in) :: model
     class(configuration_t), intent(in) :: state

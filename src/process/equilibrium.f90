@@ -284,7 +284,7 @@ contains
     class(equilibrium_t), intent(in) :: self
     real(wp) :: work
 
-    real(wp) :: own(1)
+    real(wp) :: own(1), least
     logical :: free(3, self%model%n_node)
     integer :: tool, rank
 
@@ -303,8 +303,8 @@ contains
         if (phase%pressed(tool)) work = work - dot_product(problem%tool_residual(:, tool), &
             unknowns_of(phase, tool, step%tool(:, tool), step%tilt(:, tool)))
       end do
-      if (abs(work) <= negligible_work*size_of_internal_forces(model, self%trial)*norm2(step%x)) &
-          work = 0.0_wp
+      least = negligible_work*size_of_internal_forces(model, self%trial)*norm2(step%x)
+      if (abs(work) <= least) work = 0.0_wp
       work = agreed(work)
     end associate
   end function slope

@@ -102,8 +102,8 @@ def closed_part(gmsh: Any, reading: Reading, faces: list[int]) -> Closed | None:
     if len(left) == len(large) and rims != 1 + sum(not opening.notch for opening in large):
         reading.faults.append(Fault(f"{rims} rims are left after {len(openings)} openings were filled: close them in "
                                     "the CAD program, or choose faces by --faces"))
-    found = [one.words for one in openings if not any(one is other for other in left)]
-    notes = [*reading.left_out, *reading.notes, *([f"filled: {summary(found)}"] if found else []),
+    filled = [one.words for one in openings if not any(one is other for other in left)]
+    notes = [*reading.left_out, *reading.notes, *([f"filled: {summary(filled)}"] if filled else []),
              *(f"left open, as it is larger than half of the part: {opening.said}" for opening in large)]
     text, numbers, edges = side.result(inside)
     if side.continued and (off := off_faces(gmsh, text, side.continued)) > ON_FACE * side.near:

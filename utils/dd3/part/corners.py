@@ -43,8 +43,8 @@ class Corner:
 
 @dataclass
 class Rim:
-    """The rim of a side: its nodes; of each piece from there on the edge and the face of the side; the turn at the node,
-    degrees, positive outwards."""
+    """The rim of a side: its nodes; of each piece from there on the edge and the face of the side; the turn at the
+    node, degrees, positive outwards."""
 
     nodes: np.ndarray
     edge: np.ndarray
@@ -59,15 +59,18 @@ class Rim:
 
 
 def find_corners(shape: Shape, faces: list[int]) -> list[Corner]:
-    """Return the open corners of a side: where its outer rim turns inwards on a flat face, between two flat walls on one
-    side of it, from which bends or sharp edges lead to these."""
+    """Return the open corners of a side: where its outer rim turns inwards on a flat face, between two flat walls on
+    one side of it, from which bends or sharp edges lead to these."""
     loops = find_loops(shape, faces)
     rim = rim_of(shape, faces, loops[0]) if loops else None
-    stretches = rim.stretches() if rim else []
+    if rim is None:
+        return []
+    stretches = rim.stretches()
     found = []
-    for floor, before, after, own in between_walls(shape, rim, stretches) if rim else []:
-        walls = wall_beside(shape, rim, stretches, before, -1), wall_beside(shape, rim, stretches, after, 1)
-        if walls[0] is None or walls[1] is None or not is_corner(shape, floor, walls[0][0], walls[1][0]):
+    for floor, before, after, own in between_walls(shape, rim, stretches):
+        walls = [wall for wall in (wall_beside(shape, rim, stretches, before, -1),
+                                   wall_beside(shape, rim, stretches, after, 1)) if wall is not None]
+        if len(walls) < 2 or not is_corner(shape, floor, walls[0][0], walls[1][0]):
             continue
         edges = set(rim.edge[own].tolist()) | walls[0][2] | walls[1][2]
         through = {tag for edge in edges for tag in shape.edges[edge].faces} - set(faces)
@@ -79,8 +82,9 @@ def find_corners(shape: Shape, faces: list[int]) -> list[Corner]:
 
 
 def between_walls(shape: Shape, rim: Rim, stretches: list[np.ndarray]) -> list[tuple[int, int, int, np.ndarray]]:
-    """Return where a rim turns inwards beside a flat face: that face, the stretches from which the walls are found before
-    and after, and the places of the pieces on the face, none where the rim meets it at a point between two bends."""
+    """Return where a rim turns inwards beside a flat face: that face, the stretches from which the walls are found
+    before and after, and the places of the pieces on the face, none where the rim meets it at a point between two
+    bends."""
     found = []
     count, total = len(stretches), len(rim.turn)
     for k, own in enumerate(stretches):
@@ -175,7 +179,7 @@ def closed_solid(gmsh: Any, numbers: dict[int, int], pairs: list[tuple[Corner, C
                    for edge in mitres.edges_of(gmsh, list(grown)) if set(mitres.faces_of(gmsh, edge)) <= set(grown)}
         rounded = {edge: max(radius[tag] for tag in bends if pair <= beside[tag]) for edge, pair in between.items()
                    if any(pair <= beside[tag] for tag in bends)}
-        upright = {}
+        upright: dict[int, float] = {}
         for pair in pairs:
             upright |= radii_of(gmsh, pair, between, thickness, min(rounded.values(), default=0.0))
         rounded |= upright
@@ -208,8 +212,8 @@ def radii_of(gmsh: Any, pair: tuple[Corner, Corner], between: dict[int, set[int]
 
 def numbered(gmsh: Any, tags: list[int], numbers: dict[int, int], bends: set[int], corners: list[Corner]
              ) -> dict[int, int]:
-    """Return the numbers in the part of the faces of a solid: those of the faces that they lie on; of what was made at a
-    corner that of a bend or else a wall beside it."""
+    """Return the numbers in the part of the faces of a solid: those of the faces that they lie on; of what was made at
+    a corner that of a bend or else a wall beside it."""
     near = fillets.tolerance_of(gmsh)
     found = {}
     for tag in tags:

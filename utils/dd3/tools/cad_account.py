@@ -6,8 +6,8 @@ such as colours, layers and dimensions, are left out, and so are items of a repr
 geometry. The faces of the file are counted against those that were read.
 """
 import re
-from functools import lru_cache
 from collections import defaultdict
+from functools import lru_cache
 from pathlib import Path
 
 from dd3.account import Account
