@@ -42,9 +42,20 @@ class Corner:
 
 
 @dataclass
+class Wall:
+    """A flat face to which a rim leads over bends: the faces of these, the edges on all of them up to the first corner
+    of the rim, and points of the wall's end (n, 3)."""
+
+    face: int
+    bends: set[int]
+    edges: set[int]
+    ends: np.ndarray
+
+
+@dataclass
 class Rim:
-    """The rim of a side: its nodes; of each piece from there on the edge and the face of the side; the turn at the node,
-    degrees, positive outwards."""
+    """The rim of a side: its nodes; of each piece from there on the edge and the face of the side; the turn at the
+    node, degrees, positive outwards."""
 
     nodes: np.ndarray
     edge: np.ndarray
@@ -59,28 +70,30 @@ class Rim:
 
 
 def find_corners(shape: Shape, faces: list[int]) -> list[Corner]:
-    """Return the open corners of a side: where its outer rim turns inwards on a flat face, between two flat walls on one
-    side of it, from which bends or sharp edges lead to these."""
+    """Return the open corners of a side: where its outer rim turns inwards on a flat face, between two flat walls on
+    one side of it, from which bends or sharp edges lead to these."""
     loops = find_loops(shape, faces)
     rim = rim_of(shape, faces, loops[0]) if loops else None
-    stretches = rim.stretches() if rim else []
-    found = []
-    for floor, before, after, own in between_walls(shape, rim, stretches) if rim else []:
-        walls = wall_beside(shape, rim, stretches, before, -1), wall_beside(shape, rim, stretches, after, 1)
-        if walls[0] is None or walls[1] is None or not is_corner(shape, floor, walls[0][0], walls[1][0]):
+    if rim is None:
+        return []
+    found, stretches = [], rim.stretches()
+    for floor, before, after, own in between_walls(shape, rim, stretches):
+        one, other = wall_beside(shape, rim, stretches, before, -1), wall_beside(shape, rim, stretches, after, 1)
+        if one is None or other is None or not is_corner(shape, floor, one.face, other.face):
             continue
-        edges = set(rim.edge[own].tolist()) | walls[0][2] | walls[1][2]
-        through = {tag for edge in edges for tag in shape.edges[edge].faces} - set(faces)
-        turn = angle_between(*(normal_of(shape, wall[0]) for wall in walls))
-        found.append(Corner(floor, (walls[0][0], walls[1][0]), walls[0][1] | walls[1][1], through,
-                            np.concatenate([wall[3] for wall in walls]), float(turn),
+        edges = set(rim.edge[own].tolist()) | one.edges | other.edges
+        found.append(Corner(floor, (one.face, other.face), one.bends | other.bends,
+                            {tag for edge in edges for tag in shape.edges[edge].faces} - set(faces),
+                            np.concatenate([one.ends, other.ends]),
+                            float(angle_between(normal_of(shape, one.face), normal_of(shape, other.face))),
                             shape.nodes[rim.nodes[own if len(own) else stretches[before][:1]]].mean(axis=0)))
     return found
 
 
 def between_walls(shape: Shape, rim: Rim, stretches: list[np.ndarray]) -> list[tuple[int, int, int, np.ndarray]]:
-    """Return where a rim turns inwards beside a flat face: that face, the stretches from which the walls are found before
-    and after, and the places of the pieces on the face, none where the rim meets it at a point between two bends."""
+    """Return where a rim turns inwards beside a flat face: that face, the stretches from which the walls are found
+    before and after, and the places of the pieces on the face, none where the rim meets it at a point between two
+    bends."""
     found = []
     count, total = len(stretches), len(rim.turn)
     for k, own in enumerate(stretches):
@@ -106,10 +119,8 @@ def rim_of(shape: Shape, faces: list[int], loop: Loop) -> Rim | None:
     return Rim(loop.nodes, edge, np.array([face[number] for number in edge.tolist()]), turns(shape, faces, loop))
 
 
-def wall_beside(shape: Shape, rim: Rim, stretches: list[np.ndarray], k: int, step: int
-                ) -> tuple[int, set[int], set[int], np.ndarray] | None:
-    """Return the flat face to which a rim leads from a stretch over bends, the faces of these, the edges on all of them
-    up to the first corner, and their nodes on the wall; None without one."""
+def wall_beside(shape: Shape, rim: Rim, stretches: list[np.ndarray], k: int, step: int) -> Wall | None:
+    """Return the wall to which a rim leads from a stretch, forwards or backwards, None without one."""
     bends, edges = set[int](), set[int]()
     for i in range(1, len(stretches)):
         own = stretches[(k + step * i) % len(stretches)][::step]
@@ -124,7 +135,7 @@ def wall_beside(shape: Shape, rim: Rim, stretches: list[np.ndarray], k: int, ste
         count = corner[0] + 1 if len(corner) else len(own)
         near = (own[:1] + max(-step, 0)) % len(rim.turn)
         nodes = rim.nodes[np.concatenate([near, far[:count]])]
-        return face, bends, edges | set(rim.edge[own[:count]].tolist()), shape.nodes[nodes]
+        return Wall(face, bends, edges | set(rim.edge[own[:count]].tolist()), shape.nodes[nodes])
     return None
 
 
@@ -208,8 +219,8 @@ def radii_of(gmsh: Any, pair: tuple[Corner, Corner], between: dict[int, set[int]
 
 def numbered(gmsh: Any, tags: list[int], numbers: dict[int, int], bends: set[int], corners: list[Corner]
              ) -> dict[int, int]:
-    """Return the numbers in the part of the faces of a solid: those of the faces that they lie on; of what was made at a
-    corner that of a bend or else a wall beside it."""
+    """Return the numbers in the part of the faces of a solid: those of the faces that they lie on; of what was made at
+    a corner that of a bend or else a wall beside it."""
     near = fillets.tolerance_of(gmsh)
     found = {}
     for tag in tags:
