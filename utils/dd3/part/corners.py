@@ -42,6 +42,17 @@ class Corner:
 
 
 @dataclass
+class Wall:
+    """A flat face to which a rim leads over bends: the faces of these, the edges on all of them up to the first corner
+    of the rim, and points of the wall's end (n, 3)."""
+
+    face: int
+    bends: set[int]
+    edges: set[int]
+    ends: np.ndarray
+
+
+@dataclass
 class Rim:
     """The rim of a side: its nodes; of each piece from there on the edge and the face of the side; the turn at the
     node, degrees, positive outwards."""
@@ -65,18 +76,16 @@ def find_corners(shape: Shape, faces: list[int]) -> list[Corner]:
     rim = rim_of(shape, faces, loops[0]) if loops else None
     if rim is None:
         return []
-    stretches = rim.stretches()
-    found = []
+    found, stretches = [], rim.stretches()
     for floor, before, after, own in between_walls(shape, rim, stretches):
-        walls = [wall for wall in (wall_beside(shape, rim, stretches, before, -1),
-                                   wall_beside(shape, rim, stretches, after, 1)) if wall is not None]
-        if len(walls) < 2 or not is_corner(shape, floor, walls[0][0], walls[1][0]):
+        one, other = wall_beside(shape, rim, stretches, before, -1), wall_beside(shape, rim, stretches, after, 1)
+        if one is None or other is None or not is_corner(shape, floor, one.face, other.face):
             continue
-        edges = set(rim.edge[own].tolist()) | walls[0][2] | walls[1][2]
-        through = {tag for edge in edges for tag in shape.edges[edge].faces} - set(faces)
-        turn = angle_between(*(normal_of(shape, wall[0]) for wall in walls))
-        found.append(Corner(floor, (walls[0][0], walls[1][0]), walls[0][1] | walls[1][1], through,
-                            np.concatenate([wall[3] for wall in walls]), float(turn),
+        edges = set(rim.edge[own].tolist()) | one.edges | other.edges
+        found.append(Corner(floor, (one.face, other.face), one.bends | other.bends,
+                            {tag for edge in edges for tag in shape.edges[edge].faces} - set(faces),
+                            np.concatenate([one.ends, other.ends]),
+                            float(angle_between(normal_of(shape, one.face), normal_of(shape, other.face))),
                             shape.nodes[rim.nodes[own if len(own) else stretches[before][:1]]].mean(axis=0)))
     return found
 
@@ -110,10 +119,8 @@ def rim_of(shape: Shape, faces: list[int], loop: Loop) -> Rim | None:
     return Rim(loop.nodes, edge, np.array([face[number] for number in edge.tolist()]), turns(shape, faces, loop))
 
 
-def wall_beside(shape: Shape, rim: Rim, stretches: list[np.ndarray], k: int, step: int
-                ) -> tuple[int, set[int], set[int], np.ndarray] | None:
-    """Return the flat face to which a rim leads from a stretch over bends, the faces of these, the edges on all of them
-    up to the first corner, and their nodes on the wall; None without one."""
+def wall_beside(shape: Shape, rim: Rim, stretches: list[np.ndarray], k: int, step: int) -> Wall | None:
+    """Return the wall to which a rim leads from a stretch, forwards or backwards, None without one."""
     bends, edges = set[int](), set[int]()
     for i in range(1, len(stretches)):
         own = stretches[(k + step * i) % len(stretches)][::step]
@@ -128,7 +135,7 @@ def wall_beside(shape: Shape, rim: Rim, stretches: list[np.ndarray], k: int, ste
         count = corner[0] + 1 if len(corner) else len(own)
         near = (own[:1] + max(-step, 0)) % len(rim.turn)
         nodes = rim.nodes[np.concatenate([near, far[:count]])]
-        return face, bends, edges | set(rim.edge[own[:count]].tolist()), shape.nodes[nodes]
+        return Wall(face, bends, edges | set(rim.edge[own[:count]].tolist()), shape.nodes[nodes])
     return None
 
 
@@ -179,7 +186,7 @@ def closed_solid(gmsh: Any, numbers: dict[int, int], pairs: list[tuple[Corner, C
                    for edge in mitres.edges_of(gmsh, list(grown)) if set(mitres.faces_of(gmsh, edge)) <= set(grown)}
         rounded = {edge: max(radius[tag] for tag in bends if pair <= beside[tag]) for edge, pair in between.items()
                    if any(pair <= beside[tag] for tag in bends)}
-        upright: dict[int, float] = {}
+        upright = {}
         for pair in pairs:
             upright |= radii_of(gmsh, pair, between, thickness, min(rounded.values(), default=0.0))
         rounded |= upright

@@ -15,8 +15,8 @@ from dd3.tools.surface import from_nodes
 
 # Elements along an outer straight side at least.
 ALONG = 4
-# What is tried, one after the other, until a mesh keeps to its borders and has no folds: parts of the size; of each, Gmsh's numbers of
-# the pairing of triangles, by Blossom or a simple one, and of the exchange and shift of elements.
+# What is tried, one after the other, until a mesh keeps to its borders and has no folds: parts of the size; of each,
+# Gmsh's numbers of the pairing of triangles, by Blossom or a simple one, and of the exchange and shift of elements.
 SMALLER, RECOMBINED = (1.0, 0.7, 0.5), ((1, 5), (1, 0), (0, 0))
 # Distance of points that are one, over the size; relative difference of equal areas.
 SAME_POINT = 1e-9
