@@ -23,7 +23,7 @@ from scipy.spatial import cKDTree
 
 from dd3.account import Account
 from dd3.errors import Problem
-from dd3.progress import Progress
+from dd3.progress import Progress, doing
 from dd3.tools import faces, mitres, moved
 from dd3.tools.cad_account import enter_cad
 from dd3.tools.closest import closest
@@ -92,6 +92,7 @@ def silence() -> Iterator[None]:
         os.close(kept)
 
 
+@doing("reading the CAD file")
 def load(gmsh: Any, path: Path) -> None:
     """Read the shapes of a file."""
     gmsh.clear()
@@ -176,6 +177,7 @@ def is_seam(gmsh: Any, edge: int) -> bool:
     return both.count(edge) > 1
 
 
+@doing("sewing the faces")
 def sew(gmsh: Any, path: Path, tolerance: float, wanted: bool) -> list[str]:
     """Sew faces whose edges are not shared, if that joins any; return a note. Solids are sewn if `wanted` only."""
     before = len(free_edges(gmsh)) if wanted or not gmsh.model.getEntities(3) else 0
@@ -420,6 +422,7 @@ def directions(gmsh: Any, model: Model, regular: set[int], loops: dict[int, list
     return along
 
 
+@doing("meshing the faces by patches")
 def mesh_within(gmsh: Any, path: Path, model: Model, tolerance: float, longest: float, progress: Progress) -> None:
     """Mesh the faces, with patches along free edges of a length at most; divide further those that miss the tolerance,
     have kinks, or folded patches."""
