@@ -81,7 +81,7 @@ def judged(tools: "ToolSet", material: Path | None) -> tuple[list[tuple[str, str
     if tools.blank.thinning is None:
         lines.append(("thinning", "not estimated, as the part is not laid flat: judge the draw by its run alone"))
     elif tools.blank.thinning < LEAST:
-        lines.append(("thinning", f"below {100 * LEAST:g} % by the estimate of the blank, without friction and bending"))
+        lines.append(("thinning", f"below {100 * LEAST:g} % by the estimate of the blank, without friction"))
     else:
         place = where(tools.blank.thinnest + np.array([0.0, 0.0, tools.height]))
         found = (f"{100 * tools.blank.thinning:.3g} % by the estimate of the blank, without friction, at x y z = "
@@ -96,7 +96,8 @@ def judged(tools: "ToolSet", material: Path | None) -> tuple[list[tuple[str, str
             "two strokes")
     if tools.ratio and (pan := tools.inner_pan):
         ratio = (tools.blank.area / pan.area)**0.5
-        found = f"drawing ratio {ratio:.3g}, limit about {RATIO:g}; stretched alone, thinned by {100 * pan.stretch:.3g} %"
+        found = (f"drawing ratio {ratio:.3g}, limit about {RATIO:g}; stretched alone, thinned by "
+                 f"{100 * pan.stretch:.3g} %")
         lines.append(("inner pan", found))
         if ratio > RATIO and pan.stretch > limit:
             warnings.append(f"likely to split: what is below the step of the punch is drawn first, from the whole "
