@@ -26,8 +26,8 @@ from dd3.sheet import Sheet
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "parts.md"
-TITLES = ["part", "tools", "patches", "processor time, s", "thinning estimated, %", "increments", "cut-backs", "processor time, min",
-          "path left, t", "off the tools, t", "thinning, %", "springback, mm", "warnings"]
+TITLES = ["part", "tools", "patches", "processor time, s", "thinning estimated, %", "increments", "cut-backs",
+          "processor time, min", "path left, t", "off the tools, t", "thinning, %", "springback, mm", "warnings"]
 
 
 def timed(words):
@@ -39,7 +39,8 @@ def timed(words):
 
 
 def made_tools(name, work, program):
-    """Make the tools of a part with the forces that the program gives; return what it says or the error, the number of patches, the processor time, s, and the estimated thinning, per cent."""
+    """Make the tools of a part with the forces that the program gives; return what it says or the error, the number of
+    patches, the processor time, s, and the estimated thinning, per cent."""
     part = PARTS[name]
     folder, said = work / name, work / f"{name}.txt"
     if not said.exists():
@@ -53,7 +54,8 @@ def made_tools(name, work, program):
     patches = sum(int(count) for count in re.findall(r"made of +(\d+) patches", text))
     estimate = re.findall(r"\n  thinning +((?:below )?[\d.]+) %", text) or [""]
     errors = re.findall(r"error: +(.*)", text)
-    return errors[0] if errors else "made" if (folder / "draw.dat").exists() else "none", patches, text.split(" ", 1)[0], estimate[0]
+    result = errors[0] if errors else "made" if (folder / "draw.dat").exists() else "none"
+    return result, patches, text.split(" ", 1)[0], estimate[0]
 
 
 def drawn(name, work, program):

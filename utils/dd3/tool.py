@@ -20,6 +20,7 @@ from pathlib import Path
 
 from dd3.command import new_parser
 from dd3.errors import run
+from dd3.progress import doing
 from dd3.tools import beads, picture, tool_set
 from dd3.tools.limits import supervised
 from dd3.tools.one_tool import made
@@ -82,6 +83,7 @@ def command_line() -> argparse.ArgumentParser:
     return parser
 
 
+@doing("making tools")
 def make(settings: ToolSettings, note: str = "") -> dict[str, Report]:
     """Make one tool, or the tools of a part, and write them unless they have errors; return the reports on them by the
     names of the files. The note is written into the files."""

@@ -24,6 +24,7 @@ from dd3.part.openings import Opening, curves_of, middle, openings_of
 from dd3.part.profile import Profile, edges_of, extrude, faces_of, profile_of
 from dd3.part.reading import Fault, Reading
 from dd3.part.shape import Shape
+from dd3.progress import doing
 from dd3.tools.brep import Topology
 from dd3.tools.cad_file import silence
 from dd3.tools.fillets import in_words
@@ -64,6 +65,7 @@ class Closed:
         read_text(gmsh, self.text)
 
 
+@doing("filling the openings")
 def closed_part(gmsh: Any, reading: Reading, faces: list[int]) -> Closed | None:
     """Return a part whose side with the faces given is closed, None if it is so already. What cannot be filled is a
     fault of the reading. The session has the part as it was read."""

@@ -20,7 +20,7 @@ from dd3.errors import Problem, run
 from dd3.gmsh_session import session
 from dd3.part import picture, table
 from dd3.part.reading import Reading, Request, read_part
-from dd3.progress import Progress
+from dd3.progress import Progress, doing
 from dd3.tools.cad import SUFFIXES
 from dd3.tools.limits import supervised
 
@@ -60,6 +60,7 @@ def say(reading: Reading, folder: Path) -> None:
         print(f"error: {reading.path}: {fault.text}", file=sys.stderr)
 
 
+@doing("reading the part")
 def convert(words: Sequence[str]) -> None:
     """Read, write, report."""
     parser = command_line()

@@ -11,6 +11,7 @@ from dd3.errors import Problem
 from dd3.part.rays import Rays
 from dd3.part.reading import Reading
 from dd3.part.shape import unit
+from dd3.progress import doing
 
 MOST_LABELS = 250
 OBLIQUE = 0.4  # tangent of the angle by which the view turns from across the part
@@ -21,6 +22,7 @@ FAULT, EDGE, OPENING = "#d62728", "#444444", "#1a8f4a"
 RIM, BACK, WALLS, LEVEL = np.array([[0.60, 0.63, 0.65], [0.84, 0.15, 0.16], [0.98, 0.80, 0.36], [0.45, 0.66, 0.85]])
 
 
+@doing("drawing part.png")
 def draw(reading: Reading, path: Path) -> None:
     """Write the picture: faces by their draft, walls yellow and level ones blue, undercut ones red, rims grey; edges of
     faults thick and red, with their numbers, and those of holes and notches green. No display is needed."""

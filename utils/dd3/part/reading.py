@@ -21,6 +21,7 @@ from dd3.part.shape import Shape
 from dd3.part.sheet import Sheet, apart, is_flat, read_sheet
 from dd3.part.symmetry import symmetry_planes
 from dd3.part.units import unit_of
+from dd3.progress import doing
 from dd3.tools import cad_file, faces
 from dd3.tools.cad_account import enter_cad
 
@@ -177,6 +178,7 @@ def tell_thickness(reading: Reading, request: Request) -> None:
                                     + "; ".join(other))
 
 
+@doing("judging press directions and faces")
 def read_form(reading: Reading, rays: Rays, request: Request) -> None:
     """Find direction, rims, roles of the faces, bends, radii and symmetry."""
     shape, sheet = reading.shape, reading.sheet

@@ -9,6 +9,7 @@ import numpy as np
 
 from dd3.errors import Problem
 from dd3.part.shape import SHARP, Edge, Shape, angle_between, unit
+from dd3.progress import doing
 from dd3.tools.division import Division
 from dd3.tools.joints import signs
 from dd3.tools.limits import limited
@@ -25,6 +26,7 @@ STRAIGHT = 1e-4
 TRIANGLE = 2  # kind of element in Gmsh
 
 
+@doing("sampling the faces")
 def sampled(gmsh: Any, path: Path, tags: list[int]) -> Shape:
     """Return the shape of the faces `tags`."""
     failed = triangulate(gmsh, path, tags)

@@ -8,6 +8,7 @@ import numpy as np
 
 from dd3.part.rays import Rays
 from dd3.part.shape import Shape
+from dd3.progress import doing
 from dd3.tools.joints import signs
 
 # Rays of the thickness, and the fewest of a face.
@@ -71,6 +72,7 @@ def samples(shape: Shape, faces: Iterable[int], count: int = RAYS) -> tuple[np.n
     return np.concatenate(chosen), np.concatenate(weights)
 
 
+@doing("looking for the sides of the sheet")
 def read_sheet(shape: Shape, rays: Rays) -> Sheet:
     """Return what a part is."""
     if not shape.closed:

@@ -12,6 +12,7 @@ from scipy.interpolate import BSpline
 from scipy.optimize import minimize_scalar
 
 from dd3.errors import Problem
+from dd3.progress import doing
 from dd3.tools.plane import ALONG, Side, chords, flat
 from dd3.tools.surface import from_nodes, grid, points_at
 
@@ -158,6 +159,7 @@ def kinds(points: np.ndarray, tolerance: float = np.inf) -> Iterable[Binder]:
     yield developable(points, tolerance)
 
 
+@doing("meshing the binder")
 def patches_on(gmsh: Any, binder: Binder, loops: list[list[Side]], curves: list[np.ndarray], tolerance: float
                ) -> np.ndarray:
     """Return the nodes (patch, 3, 3, 3) of patches on a binder between closed lines in plan, within the tolerance of

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from dd3.account import Account
 from dd3.errors import Problem
+from dd3.progress import doing
 
 ENTITY = re.compile(rb"#(\d+)\s*=\s*(\(?)\s*([A-Z_0-9]*)", re.IGNORECASE)
 # What OpenCASCADE begins at: products, their shapes and assemblies.
@@ -33,6 +34,7 @@ IGES = {100, 102, 104, 106, 108, 110, 112, 114, 116, 118, 120, 122, 124, 126, 12
         190, 192, 194, 196, 198, 308, 402, 408, 502, 504, 508, 510, 514}
 
 
+@doing("looking for what the file holds beside the part")
 def enter_cad(path: Path, account: Account, faces: int) -> None:
     """Enter the entities of a file of which `faces` faces were read; nothing for a BREP file, which holds shapes
     only."""

@@ -13,6 +13,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from dd3.errors import Problem
+from dd3.progress import doing
 from dd3.tools.joints import to_chords
 from dd3.tools.limits import limited
 from dd3.tools.parameters import length_of
@@ -37,6 +38,7 @@ def silence() -> Iterator[None]:
         os.close(kept)
 
 
+@doing("reading the CAD file")
 def load(gmsh: Any, path: Path) -> None:
     """Read the shapes of a file."""
     gmsh.clear()
@@ -121,6 +123,7 @@ def is_seam(gmsh: Any, edge: int) -> bool:
     return both.count(edge) > 1
 
 
+@doing("sewing the faces")
 def sew(gmsh: Any, path: Path, tolerance: float, wanted: bool) -> list[str]:
     """Sew faces whose edges are not shared, if that joins any; return a note. Solids are sewn if `wanted` only."""
     before = len(free_edges(gmsh)) if wanted or not gmsh.model.getEntities(3) else 0

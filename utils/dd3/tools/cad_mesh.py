@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from dd3.errors import Problem
-from dd3.progress import Progress
+from dd3.progress import Progress, doing
 from dd3.tools.closest import closest
 from dd3.tools.division import Division
 from dd3.tools.joints import find_joints, folded, kinks
@@ -214,6 +214,7 @@ def directions(gmsh: Any, model: Model, regular: set[int], loops: dict[int, list
     return along
 
 
+@doing("meshing the faces by patches")
 def mesh_within(gmsh: Any, path: Path, model: Model, tolerance: float, longest: float, progress: Progress) -> None:
     """Mesh the faces, with patches along free edges of a length at most; divide further those that miss the tolerance,
     have kinks, or folded patches."""

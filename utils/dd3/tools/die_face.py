@@ -8,6 +8,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from dd3.errors import Problem
+from dd3.progress import doing
 from dd3.tools import report
 from dd3.tools.binder import Binder, NoBinder, kinds, of_points, patches_on
 from dd3.tools.joints import find_joints, kinks, orient, turn
@@ -159,6 +160,7 @@ def at_borders(found: Face, die: Trimmed, rims: list[Rim], options: ToolSettings
                             + (f" within {1e3 * off:.2g} µm" if off > 0 else "")))
 
 
+@doing("making walls, shoulders and binder")
 def at_walls(found: Face, rims: list[Rim], options: ToolSettings) -> list[np.ndarray]:
     """Enter the rims at which the part ends on walls; return the patches of walls and shoulders up to their binder."""
     radius = options.shoulder

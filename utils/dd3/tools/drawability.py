@@ -81,8 +81,7 @@ def judged(tools: "ToolSet", material: Path | None) -> tuple[list[tuple[str, str
     if tools.blank.thinning is None:
         lines.append(("thinning", "not estimated, as the part is not laid flat: judge the draw by its run alone"))
     elif tools.blank.thinning < LEAST:
-        lines.append(("thinning",
-                      f"below {100 * LEAST:g} % by the estimate of the blank, without friction and bending"))
+        lines.append(("thinning", f"below {100 * LEAST:g} % by the estimate of the blank, without friction"))
     else:
         place = where(tools.blank.thinnest + np.array([0.0, 0.0, tools.height]))
         found = (f"{100 * tools.blank.thinning:.3g} % by the estimate of the blank, without friction, at x y z = "

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from dd3.errors import Problem
+from dd3.progress import doing
 from dd3.tools import fillets
 from dd3.tools.faces import spans
 
@@ -35,6 +36,7 @@ class Unfilleted:
     corners: list[int]
 
 
+@doing("rounding the sharp edges")
 def rounded(gmsh: Any, side: list[int], edges: dict[int, float]) -> tuple[dict[int, int], list[str]]:
     """Round the sharp edges of one side of a solid as `fillets.rounded`, and lead fillets that end in mitres around the
     corners; return the faces of that side with those of the file, and notes."""

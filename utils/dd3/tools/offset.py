@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from dd3.progress import doing
 from dd3.tools import cad_mesh, rolling_ball
 from dd3.tools.joints import folded, turn
 from dd3.tools.moved import shift_of
@@ -13,6 +14,7 @@ from dd3.tools.sharp_edges import Patches
 from dd3.tools.surface import Surface, from_nodes, normals_at_nodes, turned
 
 
+@doing("moving the patches to the sides of the sheet")
 def at_distance(gmsh: Any, model: cad_mesh.Model, sign: np.ndarray, kept: np.ndarray, distance: float, radius: float,
                 ahead: int, tolerance: float) -> tuple[Surface, np.ndarray]:
     """Return the patches that are kept, turned by their signs and moved along their normals, and the largest distance

@@ -7,7 +7,7 @@ import numpy as np
 
 from dd3.errors import Problem
 from dd3.gmsh_session import session
-from dd3.progress import Progress
+from dd3.progress import Progress, doing
 from dd3.tools import cad, facets, mend, moved, report, sides
 from dd3.tools.facet_files import Facets
 from dd3.tools.joints import Joints, find_joints
@@ -56,6 +56,7 @@ def from_cad(options: ToolSettings, progress: Progress) -> tuple[Surface, int, l
     return surface, len(model.parts), *judge_distance(surface, distance, options, "measured")
 
 
+@doing("making patches of facets")
 def from_facets(options: ToolSettings, progress: Progress
                ) -> tuple[Surface, int, list[tuple[str, str]], list[str]]:
     """Return the surface of a file of facets, the number of its parts and the lines of the report."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from dd3 import rendering
 from dd3.errors import Problem
+from dd3.progress import doing
 from dd3.tools.joints import EDGES, Joints, box_of
 from dd3.tools.surface import Surface, areas_at, grid, points_at
 
@@ -65,6 +66,7 @@ def labels(surface: Surface) -> tuple[np.ndarray, list[str]]:
     return np.array(places), numbers
 
 
+@doing("drawing a tool")
 def draw(surface: Surface, joints: Joints, path: Path) -> None:
     """Write the picture: faces in colours, free edges blue, those of more than two patches red, normals as arrows."""
     import pyvista as pv

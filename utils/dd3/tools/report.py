@@ -6,6 +6,7 @@ from typing import Protocol
 
 import numpy as np
 
+from dd3.progress import doing
 from dd3.tools.joints import OPPOSITE, Joints, find_joints, folded, kinks, near_misses, normals_along, signs
 from dd3.tools.settings import ToolSettings
 from dd3.tools.surface import Surface, grid, points_at
@@ -58,6 +59,7 @@ def place_of(joints: Joints, edge: int) -> str:
     return "x y z = " + where(joints.points[edge, 2])
 
 
+@doing("judging a tool")
 def judge(surface: Surface, options: ToolSettings, parts: int) -> tuple[Report, Joints]:
     """Return the report on a surface, and its joints. `options` has kind, thickness, tolerance and sew."""
     report, joints = Report(), find_joints(surface.net)

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from dd3.errors import Problem
+from dd3.progress import doing
 from dd3.tools.drawability import thinnest
 from dd3.tools.plane import crosses, inside
 from dd3.tools.surface import Surface, areas_at, grid, points_at
@@ -84,6 +85,7 @@ def blank_of(path: Path, covered: Surface, thickness: float, margin: float) -> B
                  *thinnest(mesh, places))
 
 
+@doing("laying the part flat for its blank")
 def laid_flat(path: Path, covered: Surface, thickness: float) -> tuple[Triangles, np.ndarray]:
     """Return the middle of the sheet on a surface as triangles, and the places of its nodes in the flat blank (n, 2).
     Fewer triangles have an estimate where slivers beside curved edges of patches hinder it."""

@@ -16,7 +16,7 @@ from dd3.errors import Problem
 from dd3.gmsh_session import session
 from dd3.part import setup, table
 from dd3.part.command import write_reading
-from dd3.progress import Progress
+from dd3.progress import Progress, doing
 from dd3.sheet import Sheet
 from dd3.tools import beads, drawability, pad_force, picture, report, set_deck, set_material, tool_set, trim_deck
 from dd3.tools.one_tool import judge_distance
@@ -108,6 +108,7 @@ def program_of(options: ToolSettings) -> Path | None:
     return Path(found) if found else None
 
 
+@doing("proposing draw-beads")
 def beads_of(tools: tool_set.ToolSet, options: ToolSettings) -> beads.Beads:
     """Return the draw-beads that are proposed, with their restraint by the material."""
     if "holder" not in tools.surfaces or "pad" in tools.surfaces:
@@ -124,6 +125,7 @@ def beads_of(tools: tool_set.ToolSet, options: ToolSettings) -> beads.Beads:
     return found
 
 
+@doing("computing the force of the pad by the program")
 def set_pad_force(tools: tool_set.ToolSet, options: ToolSettings) -> None:
     """Set the force of the pad if there is the program: by what holds the floor, by what the pins bear, and not less
     than by its pressure."""
@@ -143,6 +145,7 @@ def draw_in_of(run: Path) -> tuple[np.ndarray, np.ndarray]:
     return sheet.points(-1)[rim, :2], sheet.values(-1, "draw_in")[0][rim]
 
 
+@doing("checking draw.dat by the program")
 def check_deck(result: report.Report, options: ToolSettings) -> None:
     """Add what the program says of the input file of a set to its report: memory, elements, time, warnings, errors."""
     program = program_of(options)
@@ -178,6 +181,7 @@ def judge_set(tools: tool_set.ToolSet, options: ToolSettings) -> dict[str, repor
     return reports
 
 
+@doing("writing the tools")
 def write_set(tools: tool_set.ToolSet, options: ToolSettings, found: beads.Beads, command: str) -> None:
     """Write the tools of a part and the input file with draw-beads."""
     options.target.mkdir(parents=True, exist_ok=True)

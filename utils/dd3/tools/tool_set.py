@@ -14,6 +14,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from dd3.errors import Problem
+from dd3.progress import doing
 from dd3.tools import cad, cad_mesh, drawability, no_holder, own_flange, report, sides, trim_deck
 from dd3.tools.binder import NoBinder
 from dd3.tools.die_face import INSET, Face, Reach, TooLong, consistent, estimated, even, flange, with_face
@@ -268,6 +269,7 @@ def nearest(face: Face, rim: Rim) -> Reach:
     return min(face.reaches, key=lambda reach: cKDTree(reach.rim.points).query(rim.points)[0].mean())
 
 
+@doing("making the holder")
 def holder_of(gmsh: Any, face: Face, curves: list[tuple[Rim, np.ndarray]], options: ToolSettings) -> Surface:
     """Return the holder on the sheet on the binder, as wide as the die, and inwards up to the clearance between die
     and punch, normals downwards."""
