@@ -186,7 +186,7 @@ def closed_solid(gmsh: Any, numbers: dict[int, int], pairs: list[tuple[Corner, C
                    for edge in mitres.edges_of(gmsh, list(grown)) if set(mitres.faces_of(gmsh, edge)) <= set(grown)}
         rounded = {edge: max(radius[tag] for tag in bends if pair <= beside[tag]) for edge, pair in between.items()
                    if any(pair <= beside[tag] for tag in bends)}
-        upright = {}
+        upright: dict[int, float] = {}
         for pair in pairs:
             upright |= radii_of(gmsh, pair, between, thickness, min(rounded.values(), default=0.0))
         rounded |= upright

@@ -97,7 +97,7 @@ def divided(points: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray]
 def write(options: ToolSettings, curves: Curves, height: float) -> None:
     """Write the curves of a part, where the die has it, the input file and the process; `height` is that of the part in
     the coordinates of the tools, mm."""
-    write_curves(options.target / CURVES, [points + (0.0, 0.0, height) for points in curves.points],
+    write_curves(options.target / CURVES, [points + np.array([0.0, 0.0, height]) for points in curves.points],
                  options.source.name)
     material = set_material.text_of(options.material)
     (options.target / DECK).write_text(TEXT.format(part=options.source.stem, material=material, curves=CURVES),
