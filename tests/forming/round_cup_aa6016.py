@@ -29,7 +29,7 @@ RING, PUNCH, STEEL, POISSON = 31.2, 30.0, 2.1e5, 0.3  # radii of the die opening
 
 
 def ring(ratio):
-    """Return the compliance of the die, mm/MPa: a ring under inner pressure, `ratio` its outer over its inner radius."""
+    """Return the compliance of a ring under inner pressure, mm/MPa; `ratio` is its outer over its inner radius."""
     return RING / STEEL * ((ratio**2 + 1) / (ratio**2 - 1) + POISSON)
 
 
