@@ -29,12 +29,13 @@ RING, PUNCH, STEEL, POISSON = 31.2, 30.0, 2.1e5, 0.3  # radii of the die opening
 
 
 def ring(ratio):
-    """Return the compliance of the die, mm/MPa: a ring under inner pressure, `ratio` its outer over its inner radius."""
+    """Return the compliance of a ring under inner pressure, mm/MPa; `ratio` is its outer over its inner radius."""
     return RING / STEEL * ((ratio**2 + 1) / (ratio**2 - 1) + POISSON)
 
 
-# Compliances of the die; the solid punch has PUNCH (1 - POISSON) / STEEL.
-ELASTIC = {"die of 2 radii": ring(2), "die of 1.25 radii": ring(1.25), "die of 5e-3 mm/MPa": 5e-3}
+# Compliances of the die, mm/MPa; the solid punch has PUNCH (1 - POISSON) / STEEL.
+COMPLIANCE = {"rigid": 0.0, "die of 2 radii": ring(2), "die of 1.25 radii": ring(1.25), "5e-3 mm/MPa": 5e-3}
+ELASTIC_RUNS = [*(("8 x 16", die) for die in COMPLIANCE), *(("12 x 24", die) for die in list(COMPLIANCE)[:3])]
 # Heights, mm, at ANGLES, of the repository stefanSCS/PolyN, CM_Data/AA6016_CupProfiles; means of four quadrants.
 PUBLISHED = {"measured": (34.88, 34.37, 33.89, 33.47, 33.78, 34.43, 34.82),
              "POSTECH, same criterion": (34.01, 34.18, 33.96, 33.77, 33.91, 34.18, 34.08),
@@ -80,22 +81,24 @@ def main():
 def elastic_tools(options, heading):
     """Make the runs with elastic tools and their table; return whether all are there."""
     jobs, rows = [], []
-    for die, compliance in {"rigid": 0.0, **ELASTIC}.items():
+    for mesh, die in ELASTIC_RUNS:
+        name, compliance = f"{mesh}, {die}", COMPLIANCE[die]
         punch = PUNCH * (1 - POISSON) / STEEL if compliance else 0.0
-        folder = studies.make(options, "elastic_" + die.replace(" ", "_").replace("/", "_"), DECK,
-                              {"divisions": "8 16 1", "levels": 0, "die_compliance": f"{compliance:.3g}",
-                               "punch_compliance": f"{punch:.3g}"})
+        folder = studies.make(options, "elastic_" + name.replace(", ", "_").replace(" ", "_").replace("/", "_"), DECK,
+                              {"divisions": f"{mesh.replace('x ', '')} 1", "levels": 0,
+                               "die_compliance": f"{compliance:.3g}", "punch_compliance": f"{punch:.3g}"})
         if not folder:
             continue
         cup = Cup(folder, BLANK)
         jobs.append(read_job(folder))
-        rows.append([*row(die, cup.angles, cup.heights, [f"{value:.3f}" for value in cup.thickness]),
+        rows.append([*row(name, cup.angles, cup.heights, [f"{value:.3f}" for value in cup.thickness]),
                      *(largest(folder, tool) for tool in ("die", "punch")), *studies.effort(folder)])
+    complete = len(rows) == len(ELASTIC_RUNS)
     text = studies.table([*heading[:-3], "die yields by", "punch yields by", *heading[-3:]], rows)
     print(text)
-    if options.write and len(rows) == 1 + len(ELASTIC):
+    if options.write and complete:
         put_table(REPORT, "elastic", text, jobs)
-    return len(rows) == 1 + len(ELASTIC)
+    return complete
 
 
 def largest(folder, tool):
