@@ -13,7 +13,7 @@ from dd3.curve import read_curves
 from dd3.errors import Problem
 from dd3.gmsh_session import session
 from dd3.part.reading import Request, read_part
-from dd3.tools import mitres
+from dd3.tools import binder, mitres
 from dd3.tools.binder import developable, inclined, level, of_points
 from dd3.tools.cad_file import silence
 from dd3.tools.joints import find_joints, folded, kinks
@@ -124,13 +124,14 @@ def lowered(path, travel, thickness):
 def test_binders():
     """Check the kinds of binders against points of known surfaces, and what goes on beyond them."""
     x, y = (part.ravel() for part in np.meshgrid(np.linspace(-60, 60, 41), np.linspace(-20, 20, 9)))
-    assert of_points(np.stack([x, y, 0 * x + 3], axis=1), 1e-6).kind == "level"
-    tilted = of_points(np.stack([x, y, 0.1 * x - 0.05 * y + 2], axis=1), 1e-6)
+    assert of_points(np.stack([x, y, 0 * x + 3], axis=1), 1e-6)[0].kind == "level"
+    tilted, _ = of_points(np.stack([x, y, 0.1 * x - 0.05 * y + 2], axis=1), 1e-6)
     assert tilted.kind == "an inclined plane" and np.allclose(tilted.gradient(np.array([[500.0, -300.0]])), [0.1, -0.05])
     # A cylinder about an axis at 30 degrees in plan that rises along it.
     across, along = np.cos(0.5) * x + np.sin(0.5) * y, np.cos(0.5) * y - np.sin(0.5) * x
     arc = np.stack([x, y, np.sqrt(300.0**2 - across**2) - 300 + 0.05 * along], axis=1)
-    found = of_points(arc, 0.002)
+    found, off = of_points(arc, 0.002)
+    assert off < 0.002
     assert found.kind == "developable" and abs(found.across @ (np.cos(0.5), np.sin(0.5))) > 1 - 1e-6
     assert abs(found.slope * np.sign(found.across[0]) - 0.05) < 1e-4
     beyond = np.array([np.cos(0.5), np.sin(0.5)]) * np.linspace(50, 200, 601)[:, None]
@@ -138,9 +139,18 @@ def test_binders():
     assert np.abs(np.diff(step)).max() < 1.5 * 0.25 / 300 and np.abs(np.diff(step)[300:]).max() < 1e-12
     slope = (found.gradient(beyond) @ (np.cos(0.5), np.sin(0.5)))
     assert np.abs((slope[1:] + slope[:-1]) / 2 - step).max() < 1e-5
-    assert of_points(np.stack([x, y, x * y / 200], axis=1), 0.002) is None
+    assert of_points(np.stack([x, y, x * y / 200], axis=1), 0.002)[1] > 1.0
     assert inclined(arc).distance(arc) > found.distance(arc) and level(0.0).z(np.zeros(2)) == 0.0
     assert developable(arc).distance(arc) < 0.1
+
+
+def test_large_flange(monkeypatch):
+    """Check that the search for the rulings of a flange of many points, curved in two directions, takes few of them."""
+    sizes, fitted = [], binder.fitted
+    monkeypatch.setattr(binder, "fitted", lambda points, *others: sizes.append(len(points)) or fitted(points, *others))
+    x, y = (part.ravel() for part in np.meshgrid(np.linspace(-60, 60, 301), np.linspace(-40, 40, 101)))
+    _, off = of_points(np.stack([x, y, (x**2 + y**2) / 600], axis=1), 0.002)
+    assert off > 0.5 and sum(sizes) < 10 * len(x)
 
 
 def test_choices(folder, tmp_path):

@@ -20,6 +20,8 @@ from dd3.tools.surface import from_nodes, grid, points_at
 CUBIC, PIECES, MOST_PIECES = 1, 4, 64
 # Directions of rulings that are tried; weight of the smoothness of the profile, where points leave it open.
 DIRECTIONS, SMOOTH = 24, 1e-5
+# Points, about, by which the direction of the rulings is found.
+SEARCHED = 1000
 # Length over that of the profile in which its curvature fades beyond its ends.
 FADE = 0.25
 # Times the patches are halved for the tolerance, at most.
@@ -111,9 +113,10 @@ def developable(points: np.ndarray, tolerance: float = np.inf) -> Binder:
     """Return the developable surface with the direction of rulings that fits best; with a tolerance, mm, the pieces of
     its profile are halved until all points (n, 3) are within it."""
     pieces = PIECES if np.isfinite(tolerance) else CUBIC
+    some = points[::max(1, len(points) // SEARCHED)]
 
     def worst(angle: float) -> float:
-        return fitted(points, angle, pieces)[1]
+        return fitted(some, angle, pieces)[1]
 
     step = np.pi / DIRECTIONS
     first = min(np.arange(DIRECTIONS) * step, key=worst)
@@ -144,12 +147,16 @@ def fitted(points: np.ndarray, angle: float, pieces: int) -> tuple[Binder, float
                   middle - float(values[-1]) * float(along.mean())), rms
 
 
-def of_points(points: np.ndarray, tolerance: float) -> Binder | None:
-    """Return the simplest binder on which points (n, 3) lie within the tolerance, None without one."""
+@doing("fitting a binder to the flange of the part")
+def of_points(points: np.ndarray, tolerance: float) -> tuple[Binder, float]:
+    """Return the simplest binder on which points (n, 3) lie within the tolerance, or else the nearest one, and their
+    largest distance from it, mm."""
+    tried = []
     for found in kinds(points, tolerance):
-        if found.distance(points) <= tolerance:
-            return found
-    return None
+        tried.append((found, found.distance(points)))
+        if tried[-1][1] <= tolerance:
+            return tried[-1]
+    return min(tried, key=lambda one: one[1])
 
 
 def kinds(points: np.ndarray, tolerance: float = np.inf) -> Iterable[Binder]:

@@ -138,13 +138,13 @@ def refuse_mixed(walls: list[Rim], borders: list[Rim]) -> None:
 def at_borders(found: Face, die: Trimmed, rims: list[Rim], options: ToolSettings) -> None:
     """Enter the rims at which the part's own flange begins, with the binder on which it lies."""
     points = [points_at(part.net, *grid(5)).reshape(-1, 3) for part in die.flanges]
-    one = of_points(np.concatenate(points), options.tolerance)
+    whole, off = of_points(np.concatenate(points), options.tolerance)
+    one = whole if off <= options.tolerance else None
     for part, own in zip(die.flanges, points):
-        binder = one or of_points(own, options.tolerance)
-        if binder is None:
-            best = min(kinds(own, options.tolerance), key=lambda kind: kind.distance(own))
+        binder, off = (whole, off) if one or len(points) == 1 else of_points(own, options.tolerance)
+        if off > options.tolerance:
             raise NoBinder(f"the part's own flange, {report.named(part, np.unique(part.face))}, is up to "
-                           f"{best.distance(own):.3g} mm off a developable surface, which a binder has to be",
+                           f"{off:.3g} mm off a developable surface, which a binder has to be",
                            ": leave it out by --faces")
         if binder not in found.binders:
             found.binders.append(binder)
