@@ -20,6 +20,7 @@
 !> surface beside them, do not either.
 module dd3_tools_turn_field
   use dd3_base_kinds, only : i8, wp
+  use dd3_base_threads, only : least_nodes, threads_for
   use dd3_tools_surface, only : surface_t
   use dd3_tools_surface_samples, only : close_spacing, new_surface_samples, surface_samples_t
   use dd3_tools_vector_tree, only : facing_t, largest_within, new_vector_tree, vector_tree_t
@@ -34,6 +35,8 @@ module dd3_tools_turn_field
   real(wp), parameter :: resolution = 1.0e-3_wp
   !> Points up to this distance over the length from the centre of a ball form pairs.
   real(wp), parameter :: range = 0.5_wp + close_spacing
+  !> Difference of normals at right angles to the largest one that is none.
+  real(wp), parameter :: straight = 1.0e-6_wp
   !> Distance of points at the ends of the diameter that is round-off, relative.
   real(wp), parameter :: round_off = 1.0e-9_wp
 
@@ -92,12 +95,16 @@ contains
     integer :: i, n
 
     call new_cells(cells, sample%x, range*length)
+    !$omp parallel num_threads(threads_for(sample%n, least_nodes)) private(near, i, n)
     allocate (near(64))
+    !$omp do schedule(dynamic, 64)
     do i = 1, sample%n
       call find_near(cells, sample%x, i, near, n)
       turn(:, :, i) = turn_of_pairs(sample%x(:, near(:n)), sample%normal(:, near(:n)), &
           sample%x(:, i), length)
     end do
+    !$omp end do
+    !$omp end parallel
   end subroutine find_turns
 
   !> Return the largest angle between normals of points, rad, along the difference of the normals,
@@ -110,17 +117,27 @@ contains
     real(wp) :: turn(3, 2)
 
     logical :: inside(size(x, 2))
-    real(wp) :: largest, square, axis(3), side
+    real(wp), dimension(size(x, 2)) :: distance, away
+    real(wp) :: largest, square, axis(3), side, least, most
     integer :: i, j, pair(2)
 
     do i = 1, size(x, 2)
-      inside(i) = sum((x(:, i) - centre)**2) <= (0.5_wp*length*(1.0_wp + round_off))**2
+      distance(i) = sum((x(:, i) - centre)**2)
+    end do
+    inside = distance <= (0.5_wp*length*(1.0_wp + round_off))**2
+    j = minloc(distance, dim=1)
+    do i = 1, size(x, 2)
+      away(i) = norm2(normal(:, i) - normal(:, j))
     end do
     turn = 0.0_wp
-    largest = 0.0_wp
+    largest = least_of_pairs()
+    least = sqrt(largest)
+    most = maxval(away)
     pair = 1
     do j = 2, size(x, 2)
+      if (away(j) + most <= least) cycle
       do i = 1, j - 1
+        if (away(i) + away(j) <= least) cycle
         square = (normal(1, i) - normal(1, j))**2 + (normal(2, i) - normal(2, j))**2 &
             + (normal(3, i) - normal(3, j))**2
         if (square <= largest) cycle
@@ -142,6 +159,20 @@ contains
 
   contains
 
+    !> Return a square just below that of a pair, of the normal farthest from that in the middle and
+    !> the one farthest from it: pairs that are closer need not be searched.
+    pure real(wp) function least_of_pairs() result(least)
+      real(wp) :: other(size(x, 2))
+      integer :: i, j, k
+
+      k = maxloc(away, dim=1)
+      do i = 1, size(x, 2)
+        other(i) = sum((normal(:, i) - normal(:, k))**2)
+      end do
+      j = maxloc(other, dim=1)
+      least = (1.0_wp - round_off)*other(j)*factor_of_pair(j, k, other(j))
+    end function least_of_pairs
+
     !> Return the largest difference of normals along the axis, of pairs that lie rather along it
     !> than across it and turn to the same side as the first one.
     pure real(wp) function largest_along_axis() result(largest)
@@ -153,6 +184,7 @@ contains
       largest = 0.0_wp
       do j = 2, size(x, 2)
         do i = 1, j - 1
+          if (abs(component(i) - component(j)) <= max(largest, straight)) cycle
           product = (component(i) - component(j))*(place(i) - place(j))
           if (product <= 0.0_wp) cycle
           distance = norm2(x(:, i) - x(:, j))
