@@ -111,8 +111,8 @@ contains
     end associate
   end subroutine give_up_stresses
 
-  !> Let the nodal forces of the stresses fade in place of those of lost constraints. Loads that go on
-  !> are held in balance as long as these have not faded.
+  !> Let the nodal forces of the stresses fade in place of those of lost constraints. Loads that go
+  !> on are held in balance as long as these have not faded.
   subroutine fade_stresses(model, state, force, released_by)
     type(model_t), intent(in) :: model
     !> In the running phase, with its loads.
