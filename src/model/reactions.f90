@@ -38,7 +38,7 @@ contains
     class(configuration_t), intent(in) :: state
 
     scale = norm2(state%sheet%internal_force)
-    if (allocated(state%sheet%fading_force)) scale = max(scale, &
+    if (state%sheet%fades) scale = max(scale, &
         model%phase(state%phase)%fading(state%progress)*norm2(state%sheet%fading_force))
   end function size_of_internal_forces
 

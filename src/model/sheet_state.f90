@@ -22,8 +22,10 @@ module dd3_model_sheet_state
     real(wp), allocatable :: internal_variables(:, :, :)
     !> Orthotropy axes as columns in the global frame, `(3, 3, n_point, n_element)`.
     real(wp), allocatable :: orientation(:, :, :, :)
-    !> Stresses at the start of the phase, as `stress`, whose nodal forces fade over the phase as
-    !> external forces; not allocated without such forces.
+    !> Whether nodal forces of the stresses at the start of the phase fade over it as external
+    !> forces.
+    logical :: fades = .false.
+    !> These stresses, as `stress`; allocated where they fade.
     real(wp), allocatable :: fading_stress(:, :, :)
     !> These forces at their full size, in the committed configuration, `(3, n_node)`, N.
     real(wp), allocatable :: fading_force(:, :)
@@ -75,6 +77,7 @@ contains
   subroutine begin_fading(self)
     class(sheet_state_t), intent(inout) :: self
 
+    self%fades = .true.
     self%fading_stress = self%stress
     self%fading_force = self%internal_force
     self%internal_force = 0.0_wp
@@ -86,7 +89,8 @@ contains
     !> Fraction of the stresses that is left.
     real(wp), intent(in) :: left
 
-    if (.not. allocated(self%fading_stress)) return
+    if (.not. self%fades) return
+    self%fades = .false.
     self%internal_force = self%internal_force + left*self%fading_force
     deallocate (self%fading_stress, self%fading_force)
   end subroutine end_fading
@@ -96,15 +100,7 @@ contains
     class(sheet_state_t), intent(inout) :: self
     class(state_visitor_t), intent(inout) :: visitor
 
-    logical :: fades
-
-    fades = allocated(self%fading_stress)
     call visitor%reals("internal_force", size(self%internal_force), self%internal_force)
-    call visitor%one_logical("fades", fades)
-    if (fades .and. .not. allocated(self%fading_stress)) then
-      allocate (self%fading_stress, mold=self%stress)
-      allocate (self%fading_force, mold=self%internal_force)
-    end if
     associate (n => size(self%plastic, 2), n_point => size(self%plastic, 1), &
         n_variable => size(self%internal_variables, 1))
       call visitor%reals_of_items(of_elements, "stress", 6*n_point, n, self%stress)
@@ -113,7 +109,12 @@ contains
       call visitor%reals_of_items(of_elements, "orientation", 9*n_point, n, self%orientation)
       call visitor%reals_of_items(of_elements, "enhanced", size(self%enhanced, 1), n, self%enhanced)
       call visitor%logicals_of_items(of_elements, "plastic", n_point, n, self%plastic)
-      if (.not. fades) return
+      call visitor%one_logical("fades", self%fades)
+      if (.not. self%fades) return
+      if (.not. allocated(self%fading_stress)) then
+        allocate (self%fading_stress, mold=self%stress)
+        allocate (self%fading_force, mold=self%internal_force)
+      end if
       call visitor%reals_of_items(of_elements, "fading_stress", 6*n_point, n, self%fading_stress)
       call visitor%reals("fading_force", size(self%fading_force), self%fading_force)
     end associate

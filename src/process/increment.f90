@@ -46,7 +46,7 @@ contains
     type(stepper_t), intent(inout) :: stepper
 
     stepper%attempt = attempt_t(releases=has_released(committed%term) &
-        .or. allocated(committed%sheet%fading_stress) &
+        .or. committed%sheet%fades &
         .or. any(model%phase(committed%phase)%withdrawn))
     call begin_increment(committed%term, model, committed%configuration_t)
     stepper%attempt%viscosity = viscous_strength(committed%term)

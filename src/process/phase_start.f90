@@ -104,7 +104,7 @@ contains
     !> Forces of the nodes on lost constraints, `(3, n_node)`, N.
     real(wp), intent(inout) :: force(:, :)
 
-    if (.not. allocated(state%sheet%fading_force)) return
+    if (.not. state%sheet%fades) return
     associate (left => model%phase(state%phase)%fading(state%progress))
       force = force - left*state%sheet%fading_force
       call state%sheet%end_fading(left)

@@ -31,7 +31,7 @@ contains
 
     moved = new%x - old%x
     faded = 0.0_wp
-    if (allocated(new%sheet%fading_force)) faded = 0.5_wp*sum(moved*( &
+    if (new%sheet%fades) faded = 0.5_wp*sum(moved*( &
         model%phase(old%phase)%fading(old%progress)*old%sheet%fading_force &
         + model%phase(new%phase)%fading(new%progress)*new%sheet%fading_force))
     new%work%internal = old%work%internal + faded &

@@ -240,7 +240,7 @@ contains
     integer :: e
 
     text = ""
-    if (.not. (has_released(state%term) .or. allocated(state%sheet%fading_stress))) return
+    if (.not. (has_released(state%term) .or. state%sheet%fades)) return
     associate (phase => model%phase(state%phase))
       if (phase%control > 0 .or. any(phase%pressed .or. phase%withdrawn)) return
     end associate

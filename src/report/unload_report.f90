@@ -147,7 +147,7 @@ contains
       k = maxloc(abs(reaction), dim=1)
       scale = max(negligible_strain*model%least_shear()*model%thickness**2, &
           largest_force(state%term))
-      if (allocated(state%sheet%fading_force)) scale = max(scale, &
+      if (state%sheet%fades) scale = max(scale, &
           maxval(norm2(state%sheet%fading_force, dim=1)))
       call notes%add_new(merge("W107", "N103", abs(reaction(k)) > notable_reaction*scale), &
           "phase '"//phase%name//"': the largest reaction of the "// &

@@ -71,7 +71,7 @@ contains
     type(verdict_t) :: verdict
     integer :: e
 
-    if (.not. allocated(state%sheet%fading_stress)) return
+    if (.not. state%sheet%fades) return
     state%sheet%fading_force = 0.0_wp
     associate (work => system%element(1), element => model%element)
       do e = 1, size(model%part%element)
@@ -204,7 +204,7 @@ contains
     real(wp) :: stress(6, model%element%n_point)
 
     stress = state%sheet%stress(:, :, e)
-    if (allocated(state%sheet%fading_stress)) stress = stress &
+    if (state%sheet%fades) stress = stress &
         - model%phase(state%phase)%fading(state%progress)*state%sheet%fading_stress(:, :, e)
   end function acting_stress
 

@@ -150,7 +150,7 @@ contains
 
     force = force + step*(model%phase(committed%phase)%fading_rate(committed%progress) &
         *carried(self, model, committed))
-    if (allocated(committed%sheet%fading_force)) force = force - step*( &
+    if (committed%sheet%fades) force = force - step*( &
         model%phase(committed%phase)%fading_rate(committed%progress) &
         *committed%sheet%fading_force)
   end subroutine add_rate
