@@ -15,7 +15,7 @@ module dd3_app_job
   use dd3_base_ranks, only : largest_over_ranks, n_ranks, rank_of_smallest, this_rank
   use dd3_base_message, only : message_list_t
   use dd3_base_text, only : join, slice, to_text
-  use dd3_base_threads, only : most_threads
+  use dd3_base_threads, only : most_threads, set_threads
   use dd3_input_case, only : case_t
   use dd3_input_echo, only : echo_case
   use dd3_input_reader, only : read_case
@@ -125,6 +125,7 @@ contains
     start%solver = case%solver
     start%threads = options%threads
     if (start%threads == 0) start%threads = most_threads()
+    call set_threads(start%threads)
     start%directory = results_directory(options, case)
     if (size(case%point) > 0) then
       if (options%restart /= "") call fatal_error(error, "a run of material points (*POINT) "// &

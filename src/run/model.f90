@@ -10,7 +10,6 @@ module dd3_run_model
   use dd3_base_message, only : message_list_t
   use dd3_base_ranks, only : any_rank, largest_over_ranks, n_ranks
   use dd3_base_text, only : axis_name, to_text
-  use dd3_base_threads, only : set_threads
   use dd3_base_verdict, only : verdict_converged, verdict_retry, verdict_t, &
       cause_beyond_until, cause_no_progress
   use dd3_input_case, only : case_t
@@ -96,7 +95,6 @@ contains
     integer :: number, stressed(1)
 
     began = wall_time()
-    call set_threads(start%threads)
     call new_thread_choice(run%threads, start%threads)
     run%committed = start%state
     start%state = state_t()
