@@ -12,7 +12,7 @@
 !> not for p(g). The solution does not depend on s; the normal law of the mixed formulation is the
 !> limit h -> 0 with the penalty s.
 !>
-!> An elastic tool yields by c p along its normal, with its area compliance c: a spring in series
+!> An elastic tool deflects by c p along its normal, with its area compliance c: a spring in series
 !> with the layer. The gap to the surface of its file is g - c p, and the slope of the pressure in
 !> it that of the layer over 1 + c times that. The line in g is (1 + s c/A) p A, so that the root
 !> of the rigid tool stands with (1 + s c/A) p_0. Friction and slip are those of the rigid tool.
@@ -95,7 +95,7 @@ contains
   end function gap_under_force
 
   !> Return the gap to the surface of the tool without force at which the normal force acts, mm;
-  !> negative where the tool yields by more than the layer leaves.
+  !> negative where the tool deflects by more than the layer leaves.
   pure real(wp) function place_under_force(layer, force)
     type(layer_t), intent(in) :: layer
     !> Positive in compression, N.

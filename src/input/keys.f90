@@ -178,8 +178,8 @@ contains
       row("friction", kind_real, "", "0", "coefficient of friction", lower=zero), &
       row("friction_law", kind_law, "", "-", "factor on `friction` by the contact pressure; "// &
           "several are multiplied", repeatable=.true.), &
-      row("compliance", kind_real, "mm/MPa", "0", "distance over which the surface yields "// &
-          "along its normal per contact pressure, by the elasticity of the tool; 0: rigid", &
+      row("compliance", kind_real, "mm/MPa", "0", "deflection of the surface along its "// &
+          "normal per contact pressure, by the elasticity of the tool; 0: rigid", &
           lower=zero), &
       row("contact", kind_name, "", "", "node set of the candidates on the sheet", form="set"), &
       row("position", kind_reals, "mm", "0 0 0", "initial offset", count=3)]

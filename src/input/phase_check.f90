@@ -120,15 +120,34 @@ contains
           "a tool cannot keep a gap and be "//released//" in the same phase", &
           "move for the path of a released tool", code="E124")
     end do
+    if (phase%at_once) then
+      call refuse(phase%hold%at)
+      call refuse(phase%move%at)
+      call refuse(phase%turn%at)
+      call refuse(phase%release%at)
+    end if
     do i = 1, size(phase%move)
-      if (phase%at_once) call errors%push_input(phase%move(i)%at, &
-          "a tool cannot move in a phase that takes it away, by unload = at_once", &
-          "unload = on, which withdraws the tools", code="E124")
       if (withdrawn(phase%move(i)%tool) .and. size(phase%move_table) > 0) then
         call errors%push_input(phase%move(i)%at, "move_table does not act on a tool that is "// &
           released//" in the same phase: it is withdrawn at a constant rate", code="E124")
       end if
     end do
+
+  contains
+
+    !> Report actions of tools that the phase takes away.
+    subroutine refuse(at)
+      type(location_t), intent(in) :: at(:)
+
+      integer :: k
+
+      do k = 1, size(at)
+        call errors%push_input(at(k), "a tool has no contact in a phase with unload = at_once", &
+            "no hold, move, turn or release; or unload = on, which withdraws the tools", &
+            code="E124")
+      end do
+    end subroutine refuse
+
   end subroutine check_withdrawn
 
   !> Mark a tool as named; report it if it was named before.

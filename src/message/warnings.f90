@@ -199,9 +199,9 @@ contains
       row("W125", "curve of a cut beyond the sheet", &
           "A curve of `*TRIM` that bounds what stays goes beyond the border of the sheet, "// &
           "where this stays as it is; or a curve lies beside the sheet and cuts nothing, as "// &
-          "curves of a whole part do beside a quarter of it.", &
-          "Curves on the sheet, or a larger blank; in a quarter of a sheet it is as it "// &
-          "should be.")]
+          "holes of a whole part do beside a quarter of it. There is no warning of a curve that "// &
+          "is symmetric to a side of the sheet, as that of a whole part to its half.", &
+          "Curves on the sheet, or a larger blank; nothing for holes beside a quarter.")]
   end function sheet_warnings
 
   !> Return the notes.
@@ -233,7 +233,7 @@ contains
           "The largest force on a support with `pin` in the phase, and its mean bearing "// &
           "pressure, which is below the yield stress of the sheet.", "None."), &
       row("N110", "deflection of elastic tools", &
-          "Largest distance by which a tool with `compliance` yields at the end of the phase, "// &
+          "Largest deflection of a tool with `compliance` at the end of the phase, "// &
           "and the contact pressure there.", "None.")]
   end function notes
 

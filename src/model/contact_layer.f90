@@ -32,7 +32,7 @@ module dd3_model_contact_layer
 
 contains
 
-  !> Return the layer of a tool at a candidate. An elastic tool yields by the pressure on the area
+  !> Return the layer of a tool at a candidate. An elastic tool deflects by the pressure on the area
   !> of the sheet without strain, as the layer does; it changes as the thickness does.
   pure type(layer_t) function layer_at(model, phase, tool, c) result(layer)
     type(model_t), intent(in) :: model
@@ -45,8 +45,8 @@ contains
         model%tool(tool)%compliance/model%contact_area(c)
   end function layer_at
 
-  !> Return the distance by which the tool of a candidate yields, mm, from above: by the whole
-  !> contact force. By as much a candidate in equilibrium may lie inside the tool's surface.
+  !> Return an upper bound of the deflection of a candidate's tool, mm: by the norm of the contact
+  !> force. By as much a candidate in equilibrium may lie inside the tool's surface.
   pure real(wp) function deflection_at(model, state, c) result(deflection)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state

@@ -143,7 +143,7 @@ contains
     call largest_over_ranks(size(contact), contact%pressure)
   end function tool_contacts
 
-  !> Return the largest distance by which each tool yields, `(n_tool)`, mm: its compliance times the
+  !> Return the largest deflection of each tool, `(n_tool)`, mm: its compliance times the
   !> pressure, at points that do not move on edges of the mesh.
   function tool_deflections(model, state) result(deflection)
     type(model_t), intent(in) :: model

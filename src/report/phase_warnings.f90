@@ -329,7 +329,7 @@ contains
     end associate
   end function gap_note
 
-  !> Return a note on the largest distance by which elastic tools yield; empty without them.
+  !> Return a note on the largest deflection of elastic tools; empty without them.
   function deflection_note(model, state) result(text)
     type(model_t), intent(in) :: model
     !> State at the end of the phase.
@@ -343,11 +343,11 @@ contains
     deflection = tool_deflections(model, state)
     do tool = 1, model%n_tool
       if (deflection(tool) <= 0.0_wp) cycle
-      text = text//", '"//model%tool(tool)%name//"' by "//to_text(deflection(tool), 3)// &
+      text = text//", '"//model%tool(tool)%name//"' "//to_text(deflection(tool), 3)// &
           " mm at "//to_text(deflection(tool)/model%tool(tool)%compliance, 3)//" MPa"
     end do
     if (len(text) > 0) text = "phase '"//model%phase(state%phase)%name// &
-        "': elastic tools yield"//text(2:)
+        "': largest deflection of elastic tools"//text(2:)
   end function deflection_note
 
 end module dd3_report_phase_warnings

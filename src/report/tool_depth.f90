@@ -56,7 +56,7 @@ module dd3_report_tool_depth
     real(wp) :: size = 0.0_wp, thickness = 0.0_wp
     !> Largest depth that is looked for, mm.
     real(wp) :: search_depth = 0.0_wp
-    !> Distance by which the tool yields at its corners, mm; no part of a depth.
+    !> Deflection of the tool at its corners, mm; no part of a depth.
     real(wp) :: deflection = 0.0_wp
     !> Bounding box of the face and the space behind it within the search depth, mm.
     real(wp) :: lower(3) = 0.0_wp, upper(3) = 0.0_wp
@@ -259,7 +259,7 @@ contains
     self%height = maxval(matmul(self%normal, self%x))
   end subroutine set_face
 
-  !> Keep a larger depth behind the surface as it yields.
+  !> Keep a larger depth behind the deflected surface.
   pure subroutine keep_larger(self, depth, x, face)
     type(tool_depth_t), intent(inout) :: self
     !> Depth and place, mm.

@@ -64,7 +64,7 @@ contains
     end associate
   end function joints
 
-  !> Return the distance by which an elastic tool yields; empty for a rigid one.
+  !> Return the deflection of an elastic tool; empty for a rigid one.
   function elasticity(model, tool) result(text)
     type(model_t), intent(in) :: model
     integer, intent(in) :: tool
@@ -75,7 +75,7 @@ contains
 
     text = ""
     associate (compliance => model%tool(tool)%compliance)
-      if (compliance > 0.0_wp) text = "; yields by "//to_text(pressure*compliance, 3)// &
+      if (compliance > 0.0_wp) text = "; deflects by "//to_text(pressure*compliance, 3)// &
           " mm at "//to_text(nint(pressure))//" MPa"
     end associate
   end function elasticity

@@ -82,7 +82,7 @@ contains
 
   !> Find the tool of a candidate: the nearest, or the one it is deepest in, with hysteresis. In the
   !> committed state every candidate is outside the tools, or no deeper inside than their layers lie
-  !> back and its tool yields; since then it cannot have come deeper inside a tool than it moved
+  !> back and its tool deflects; since then it cannot have come deeper inside a tool than it moved
   !> relative to it.
   subroutine find_nearest_tool(self, model, committed, trial, c, position, hint, nearest)
     !> Gets the tool, 0 if none is within the search distance.

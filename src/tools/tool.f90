@@ -20,7 +20,7 @@ module dd3_tools_tool
     type(surface_t) :: surface
     !> Friction against the sheet.
     type(friction_t) :: friction
-    !> Distance over which the surface yields along its normal per pressure, mm/MPa; 0: rigid.
+    !> Deflection of the surface along its normal per pressure, mm/MPa; 0: rigid.
     real(wp) :: compliance = 0.0_wp
     !> Initial offset of the surface's frame from the global one, mm.
     real(wp) :: position(3) = 0.0_wp

@@ -35,7 +35,8 @@ module dd3_tools_turn_field
   real(wp), parameter :: resolution = 1.0e-3_wp
   !> Points up to this distance over the length from the centre of a ball form pairs.
   real(wp), parameter :: range = 0.5_wp + close_spacing
-  !> Difference of normals at right angles to the largest one that is none.
+  !> Difference of normals at right angles to the largest one up to which the surface is straight
+  !> there.
   real(wp), parameter :: straight = 1.0e-6_wp
   !> Distance of points at the ends of the diameter that is round-off, relative.
   real(wp), parameter :: round_off = 1.0e-9_wp
@@ -141,7 +142,8 @@ contains
         square = (normal(1, i) - normal(1, j))**2 + (normal(2, i) - normal(2, j))**2 &
             + (normal(3, i) - normal(3, j))**2
         if (square <= largest) cycle
-        square = square*factor_of_pair(i, j, square)
+        square = square*factor_of_pair(square, sum((x(:, i) - x(:, j))**2), length, &
+            inside(i) .and. inside(j))
         if (square <= largest) cycle
         largest = square
         pair = [i, j]
@@ -159,8 +161,8 @@ contains
 
   contains
 
-    !> Return a square just below that of a pair, of the normal farthest from that in the middle and
-    !> the one farthest from it: pairs that are closer need not be searched.
+    !> Return a square just below that of one pair, of the normal that differs most from that in the
+    !> middle and the one that differs most from it: smaller differences need not be searched.
     pure real(wp) function least_of_pairs() result(least)
       real(wp) :: other(size(x, 2))
       integer :: i, j, k
@@ -170,7 +172,8 @@ contains
         other(i) = sum((normal(:, i) - normal(:, k))**2)
       end do
       j = maxloc(other, dim=1)
-      least = (1.0_wp - round_off)*other(j)*factor_of_pair(j, k, other(j))
+      least = (1.0_wp - round_off)*other(j)*factor_of_pair(other(j), &
+          sum((x(:, j) - x(:, k))**2), length, inside(j) .and. inside(k))
     end function least_of_pairs
 
     !> Return the largest difference of normals along the axis, of pairs that lie rather along it
@@ -190,32 +193,32 @@ contains
           distance = norm2(x(:, i) - x(:, j))
           if (2.0_wp*(place(i) - place(j))**2 < distance**2) cycle
           if (product <= largest*distance) cycle
-          largest = max(largest, product/distance &
-              *sqrt(factor_of_pair(i, j, sum((normal(:, i) - normal(:, j))**2))))
+          largest = max(largest, product/distance*sqrt(factor_of_pair( &
+              sum((normal(:, i) - normal(:, j))**2), distance**2, length, &
+              inside(i) .and. inside(j))))
         end do
       end do
     end function largest_along_axis
 
-    !> Return the factor with which the square of the difference of two normals counts; 0 for a pair
-    !> that does not.
-    pure real(wp) function factor_of_pair(i, j, square) result(factor)
-      integer, intent(in) :: i, j
-      !> Square of the difference.
-      real(wp), intent(in) :: square
-
-      real(wp) :: distance
-
-      factor = 0.0_wp
-      if (square > largest_square) return
-      distance = sum((x(:, i) - x(:, j))**2)
-      if (distance > length**2) then
-        if (square <= largest_outside) factor = length**2/distance
-      else if (inside(i) .and. inside(j)) then
-        factor = 1.0_wp
-      end if
-    end function factor_of_pair
-
   end function turn_of_pairs
+
+  !> Return the factor with which the square of the difference of two normals counts; 0 for a pair
+  !> that does not.
+  pure real(wp) function factor_of_pair(square, distance, length, inside) result(factor)
+    !> Square of the difference, and that of the distance of the points, mm2.
+    real(wp), intent(in) :: square, distance
+    !> Diameter of the ball, mm, and whether both points are in it.
+    real(wp), intent(in) :: length
+    logical, intent(in) :: inside
+
+    factor = 0.0_wp
+    if (square > largest_square) return
+    if (distance > length**2) then
+      if (square <= largest_outside) factor = length**2/distance
+    else if (inside) then
+      factor = 1.0_wp
+    end if
+  end function factor_of_pair
 
   !> Sort points into cells.
   subroutine new_cells(self, x, size_of)

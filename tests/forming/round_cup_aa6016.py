@@ -94,7 +94,7 @@ def elastic_tools(options, heading):
         rows.append([*row(name, cup.angles, cup.heights, [f"{value:.3f}" for value in cup.thickness]),
                      *(largest(folder, tool) for tool in ("die", "punch")), *studies.effort(folder)])
     complete = len(rows) == len(ELASTIC_RUNS)
-    text = studies.table([*heading[:-3], "die yields by", "punch yields by", *heading[-3:]], rows)
+    text = studies.table([*heading[:-3], "die deflects by", "punch deflects by", *heading[-3:]], rows)
     print(text)
     if options.write and complete:
         put_table(REPORT, "elastic", text, jobs)

@@ -82,7 +82,7 @@ normal force is F_0 (1/x - 2 + x). While the block sticks, its foot slips elasti
 sums over increments of 1 % of h, whose error is of second order. Deck `tests/verification/contact_layer/case.dat`.
 """, values),
             Section("V18 Block on a table: elastic tool", """
-The same block on a table with a `compliance` of 0.002 mm/MPa, which is lifted by 0.03 mm: it yields by more than the
+The same block on a table with a `compliance` of 0.002 mm/MPa, which is lifted by 0.03 mm: it deflects by more than the
 height of its layer. Layer, table and block are springs in series: the travel from the first contact is
 h (1 - x) + c F/A + F t/(E A), x the part of the layer that F leaves. The tangential forces are those of a rigid table
 under the same normal force; the energy c F²/(2 A) of the table is added to that of the layer.
