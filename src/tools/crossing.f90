@@ -19,7 +19,7 @@ module dd3_tools_crossing
   use dd3_base_kinds, only : wp
   use dd3_tools_bezier, only : evaluate, unit_normal
   use dd3_tools_hit, only : border_t
-  use dd3_tools_surface, only : edge_parameters, surface_t
+  use dd3_tools_surface, only : border_edge_t, edge_parameters, n_chord, surface_t
   implicit none
   private
   public :: crossing_t, find_crossing, near_border
@@ -27,8 +27,6 @@ module dd3_tools_crossing
   !> Largest number of iterations, and change of the parameters that ends them.
   integer, parameter :: iterations = 20
   real(wp), parameter :: converged = 1.0e-13_wp
-  !> Parameters at which the iterations start, the nearest of them.
-  real(wp), parameter :: start(5) = [0.0_wp, 0.25_wp, 0.5_wp, 0.75_wp, 1.0_wp]
   !> Largest squared cosine of the angle between edge and border: at smaller angles the crossing is
   !> ill-conditioned, and the other edges of the faces cross the border.
   real(wp), parameter :: parallel = 0.7_wp
@@ -95,7 +93,7 @@ contains
     type(crossing_t), intent(out) :: crossing
 
     type(crossing_t) :: candidate
-    real(wp) :: lower(3), upper(3), reach
+    real(wp) :: lower(3), upper(3), reach, t, distance
     integer :: b
 
     reach = border%radius + largest_gap
@@ -105,7 +103,9 @@ contains
     do b = 1, size(surface%border)
       associate (edge => surface%border(b))
         if (any(lower > edge%upper .or. upper < edge%lower)) cycle
-        call cross_edge(surface, edge%patch, edge%edge, ends, border%radius, candidate)
+        call find_nearest_end(edge, ends, t, distance)
+        if (distance > reach + border%radius + edge%chord) cycle
+        call cross_edge(surface, edge%patch, edge%edge, ends, border%radius, t, candidate)
       end associate
       if (.not. candidate%found .or. candidate%distance >= crossing%distance) cycle
       if (dot_product(candidate%normal, outward) > 0.0_wp) cycle
@@ -115,11 +115,12 @@ contains
   end subroutine find_crossing
 
   !> Find the closest points of an edge of the mesh and of one of a patch.
-  pure subroutine cross_edge(surface, k, e, ends, radius, crossing)
+  pure subroutine cross_edge(surface, k, e, ends, radius, start, crossing)
     type(surface_t), intent(in) :: surface
     !> Patch, and number of its edge.
     integer, intent(in) :: k, e
-    real(wp), intent(in) :: ends(3, 2), radius
+    !> Parameter at which the iterations start.
+    real(wp), intent(in) :: ends(3, 2), radius, start
     !> Not found if the closest point of the edge is one of its ends.
     type(crossing_t), intent(out) :: crossing
 
@@ -129,7 +130,7 @@ contains
     logical :: ended
 
     line = ends(:, 2) - ends(:, 1)
-    t = first_parameter(surface, k, e, ends)
+    t = start
     do i = 1, iterations
       at = border_point(surface, k, e, t, radius)
       if (.not. at%regular) return
@@ -151,26 +152,31 @@ contains
     call set_contact(crossing, at, line, offset + radius*at%normal, radius, ended)
   end subroutine cross_edge
 
-  !> Return the parameter of the border's point nearest to an edge of the mesh among some.
-  pure real(wp) function first_parameter(surface, k, e, ends) result(t)
-    type(surface_t), intent(in) :: surface
-    integer, intent(in) :: k, e
+  !> Find the end of a chord of the border that is nearest to an edge of the mesh.
+  pure subroutine find_nearest_end(border, ends, t, distance)
+    type(border_edge_t), intent(in) :: border
     real(wp), intent(in) :: ends(3, 2)
+    !> Its parameter.
+    real(wp), intent(out) :: t
+    !> mm.
+    real(wp), intent(out) :: distance
 
-    type(border_point_t) :: at
-    real(wp) :: line(3), offset(3), distance(size(start))
+    real(wp) :: line(3), offset(3), square, nearest, length
     integer :: i
 
     line = ends(:, 2) - ends(:, 1)
-    do i = 1, size(start)
-      at = border_point(surface, k, e, start(i), 0.0_wp)
-      offset = at%y - ends(:, 1)
-      offset = offset - line*min(max(dot_product(offset, line)/dot_product(line, line), 0.0_wp), &
-          1.0_wp)
-      distance(i) = norm2(offset)
+    length = dot_product(line, line)
+    nearest = huge(1.0_wp)
+    do i = 0, n_chord
+      offset = border%point(:, i) - ends(:, 1)
+      offset = offset - line*min(max(dot_product(offset, line)/length, 0.0_wp), 1.0_wp)
+      square = dot_product(offset, offset)
+      if (square >= nearest) cycle
+      nearest = square
+      t = real(i, wp)/n_chord
     end do
-    t = start(minloc(distance, dim=1))
-  end function first_parameter
+    distance = sqrt(nearest)
+  end subroutine find_nearest_end
 
   !> Return the point of a border at a parameter.
   pure type(border_point_t) function border_point(surface, k, e, t, radius) result(at)

@@ -3,12 +3,12 @@
 module dd3_tools_surface
   use dd3_base_kinds, only : wp
   use dd3_base_near_points, only : near_pairs
-  use dd3_tools_bezier, only : edge_points, normal_at, patch_t
+  use dd3_tools_bezier, only : edge_points, normal_at, patch_t, position_at
   use dd3_tools_box_tree, only : box_tree_t, new_box_tree
   use dd3_tools_oriented_box, only : new_oriented_box, oriented_box_t
   implicit none
   private
-  public :: surface_t, edge_t, border_edge_t, new_surface, join_patches, edge_parameters, &
+  public :: surface_t, edge_t, border_edge_t, n_chord, new_surface, join_patches, edge_parameters, &
       edge_number, coincident
 
   !> Parameters at which two edges are compared.
@@ -49,12 +49,17 @@ module dd3_tools_surface
     real(wp) :: band = 0.0_wp
   end type edge_t
 
+  !> Number of chords of an edge of the border.
+  integer, parameter :: n_chord = 16
+
   !> An edge of the border.
   type :: border_edge_t
     !> Patch, and number of the edge as in `edge_t`.
     integer :: patch = 0, edge = 0
     !> Bounding box of its control points, mm.
     real(wp) :: lower(3) = 0.0_wp, upper(3) = 0.0_wp
+    !> Ends of chords at equal distances of the parameter, and length of the longest, mm.
+    real(wp) :: point(3, 0:n_chord) = 0.0_wp, chord = 0.0_wp
   end type border_edge_t
 
   !> The surface of a tool.
@@ -281,9 +286,25 @@ contains
         point = edge_control(self%patch(i), k)
         n = n + 1
         self%border(n) = border_edge_t(i, k, minval(point, dim=2), maxval(point, dim=2))
+        call set_chords(self%border(n), self%patch(i))
       end do
     end do
   end subroutine set_border
+
+  !> Set the chords of an edge of the border.
+  pure subroutine set_chords(self, patch)
+    type(border_edge_t), intent(inout) :: self
+    type(patch_t), intent(in) :: patch
+
+    real(wp) :: uv(2)
+    integer :: i
+
+    do i = 0, n_chord
+      uv = edge_parameters(self%edge, real(i, wp)/n_chord)
+      self%point(:, i) = position_at(patch, uv(1), uv(2))
+      if (i > 0) self%chord = max(self%chord, norm2(self%point(:, i) - self%point(:, i - 1)))
+    end do
+  end subroutine set_chords
 
   !> Return the control points of an edge, mm.
   pure function edge_control(patch, k) result(point)
