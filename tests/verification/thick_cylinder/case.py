@@ -87,8 +87,7 @@ bore another 3.4 %: 0.20474 mm. The program's deviation from the closed form is 
 """),
     Section("V11 Thick cylinder: refinement and elements", """
 Small strains (2.4 MPa), displacement of the rim at c = 180 mm against the radial integration. The edges of `hex20` and
-`hex27` on the circles are curved. `solid_shell` has its thickness along the axis. The integration has an error of
-0.005 %; the errors of the quadratic elements change sign, because they depend on the position of the edge of the
-plastic zone within an element.
+`hex27` on the circles are curved. `solid_shell` has its thickness along the axis. The errors of the quadratic elements
+change sign with the position of the edge of the plastic zone within an element.
 """, study, slow=True, picture="thick_cylinder_elements.png"),
 ]
