@@ -133,21 +133,17 @@ contains
     heading = newline//"## `"//trim(key)//" = law key=value ...`"//newline//newline
   end function heading
 
-  !> Return the laws of a key with the names of their parameters in Markdown.
+  !> Return the laws of a key in Markdown.
   function table_of(key, law) result(text)
     character(len=*), intent(in) :: key
     type(description_t), intent(in) :: law(:)
     character(len=:), allocatable :: text
 
-    integer :: i, p
+    integer :: i
 
-    text = heading(key)//"| law | meaning | parameters |"//newline//"|---|---|---|"//newline
+    text = heading(key)//"| law | meaning |"//newline//"|---|---|"//newline
     do i = 1, size(law)
-      text = text//"| `"//trim(law(i)%name)//"` | "//escaped(trim(law(i)%title))//" |"
-      do p = 1, size(law(i)%rows)
-        text = text//" `"//trim(law(i)%rows(p)%name)//"`"
-      end do
-      text = text//" |"//newline
+      text = text//"| `"//trim(law(i)%name)//"` | "//escaped(trim(law(i)%title))//" |"//newline
     end do
   end function table_of
 

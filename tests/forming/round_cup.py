@@ -123,7 +123,7 @@ def main():
             jobs.append(read_job(folder))
     estimates = {law: estimate(options.program, material) for law, material in MATERIALS.items()}
     rows = [row(name, cup.angles, cup.heights, efforts[name]) for name, cup in cups.items()]
-    rows += [row(f"{law}, estimate", *values, ["", "", ""]) for law, values in estimates.items()]
+    rows += [row(f"{law}, estimate", *values, [""]) for law, values in estimates.items()]
     heights = studies.table(["run", *(f"{angle}°" for angle in ANGLES), "mean", "range", "ears", "at, degrees",
                              "increments"], rows)
     thickness = studies.table(["run", "smallest", "largest", "rim, smallest", "rim, largest"],

@@ -58,7 +58,7 @@ def draw(cups):
 def main():
     """Make the runs and the table."""
     options = studies.arguments(__doc__)
-    cups, jobs, rows = {}, [], [row(name, ANGLES, np.array(heights), [""]*5) for name, heights in PUBLISHED.items()]
+    cups, jobs, rows = {}, [], [row(name, ANGLES, np.array(heights), [""]*3) for name, heights in PUBLISHED.items()]
     for name, values in RUNS.items():
         folder = studies.make(options, name.replace(", ", "_").replace(" ", "_"), DECK,
                               {**values, "levels": 0})
