@@ -30,8 +30,7 @@ PICTURES = ROOT / "docs" / "images" / "verification"
 HEADING = re.compile(r"^## ", re.MULTILINE)
 ELEMENTS = ["hex8", "solid_shell", "hex20", "hex27"]
 ACCURATE = 0.02
-SUMMARY = ["section", "values", "largest error, of its tolerance"]
-FIXED = ["Summary", "Elements side by side"]
+BESIDE_HEAD = "Elements side by side"
 START = """# Verification manual
 
 Cases with a closed form, an independent computation or a published figure: expected value, computed value and error.
@@ -125,17 +124,6 @@ def size(cell):
     return float(cell.removesuffix(" %")) / (100 if cell.endswith("%") else 1)
 
 
-def summary(parts):
-    """Return the table of the sections with their largest errors."""
-    rows = []
-    for heading, text in parts.items():
-        values = cells(text, VALUE_HEAD)
-        anchor = re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
-        if values:
-            rows.append([f"[{heading}](#{anchor})", str(len(values)), f"{100 * max(map(of_tolerance, values)):.0f} %"])
-    return table(SUMMARY, rows)
-
-
 def comparison(parts):
     """Return the table of the coarsest meshes that are accurate enough, by case and element."""
     rows = []
@@ -219,7 +207,7 @@ def draw(section, text, outcome=None):
 def write(parts, values):
     """Write the page, from its sections, and all values."""
     VALUES.write_text("\n".join(values.values()), encoding="utf-8")
-    start = [START, f"## {FIXED[0]}\n", summary(values), f"## {FIXED[1]}\n", BESIDE, comparison(values)]
+    start = [START, f"## {BESIDE_HEAD}\n", BESIDE, comparison(values)]
     PAGE.write_text("\n".join([*start, *parts.values()]), encoding="utf-8")
 
 
@@ -253,7 +241,7 @@ def main():
         wrong += [f"{section.heading}: {line}" for line in differences(section, outcome, text)]
     if options.write:
         write(*({heading: text for heading, text in found.items() if text.strip()} for found in (parts, values)))
-    elif not options.only and [heading for heading in old if heading not in FIXED] != list(parts):
+    elif not options.only and [heading for heading in old if heading != BESIDE_HEAD] != list(parts):
         wrong.append("the page has other sections")
     sys.exit("\n".join(wrong) if wrong else 0)
 
