@@ -44,12 +44,9 @@ value with the largest error, of its tolerance; all values and the meshes of the
 `tests/verification/values.md`. The tests `verification` and `verification_slow` require that each error is within the
 tolerance.
 
-Some numbers are not on this page: V3 is in unit tests, V26, V28 and V30 are the reports on the
-[square cup](reports/square_cup.md), the [round cup](reports/round_cup.md) and the [rail](reports/rail.md); V10, V12,
-V15, V17, V27 and V29 are not used.
-
-No section compares with an experiment. Comparisons with measured values are in the reports on the [split
-ring](reports/split_ring.md), for springback, the [cup of AA6016](reports/round_cup_aa6016.md) and the [square
+V3 is in unit tests, V26, V28 and V30 are reports ([square cup](reports/square_cup.md), [round
+cup](reports/round_cup.md), [rail](reports/rail.md)). Comparisons with measured values are in the reports on the [split
+ring](reports/split_ring.md), the [cup of AA6016](reports/round_cup_aa6016.md) and the [square
 cup](reports/square_cup.md#the-aluminium-sheet).
 
 The tests `case_bending_*` that have no section here compare the bending test with the program's own runs, with halved
