@@ -105,7 +105,8 @@ def main():
         print("| " + " | ".join(rows[-1]) + " |", flush=True)
     if options.write:
         shown = [[cell for title, cell in zip(TITLES, row) if title in ON_THE_PAGE] for row in rows]
-        put_table(PAGE, "runs", table(ON_THE_PAGE, shown), [read_job(folder) for folder in options.work.glob("*/draw.out")])
+        put_table(PAGE, "runs", table(ON_THE_PAGE, shown),
+                  [read_job(folder) for folder in options.work.glob("*/draw.out")])
 
 
 if __name__ == "__main__":
