@@ -71,9 +71,9 @@ include(CheckFunctionExists)
 set(CMAKE_REQUIRED_LIBRARIES LAPACK::LAPACK)
 check_function_exists(openblas_set_num_threads DD3_OPENBLAS)
 unset(CMAKE_REQUIRED_LIBRARIES)
-set(blas_linalg cmake/absent/blas_threads.f90)
+set(blas_linalg cmake/absent/blas.f90)
 if(DD3_OPENBLAS)
-  set(blas_linalg src/external/blas_threads.f90)
+  set(blas_linalg src/external/blas.f90)
 endif()
 
 # GNU ld, gold, lld and mold can replace a function by another; the linker of macOS cannot.

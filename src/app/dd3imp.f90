@@ -9,6 +9,7 @@ program dd3imp
   use dd3_app_job, only : run_job
   use dd3_app_memory, only : end_program, watch_memory
   use dd3_base_error, only : error_t
+  use dd3_external_blas, only : use_kernels_of_processor
   use dd3_base_ranks, only : end_ranks, start_ranks, this_rank
   implicit none
 
@@ -16,6 +17,7 @@ program dd3imp
   type(error_t), allocatable :: error
   integer :: exit_code, ignored
 
+  call use_kernels_of_processor()
   call watch_memory()
   call start_ranks()
   call read_command_line(options, error)

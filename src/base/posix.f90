@@ -9,7 +9,7 @@ module dd3_base_posix
   public :: posix_creat, posix_write, posix_ftruncate, posix_lseek, posix_close, posix_dup, &
       posix_fsync, linux_fallocate, linux_flock, posix_isatty, posix_mkdir, posix_unlink, &
       posix_rename, posix_readlink, posix_getcwd, posix_gethostname, posix_getrlimit, &
-      posix_setenv, c_fopen, posix_fileno, c_fclose, c_atexit, c_exit, posix_exit
+      posix_setenv, posix_execv, c_fopen, posix_fileno, c_fclose, c_atexit, c_exit, posix_exit
 
   interface
     !> creat(2).
@@ -121,6 +121,13 @@ module dd3_base_posix
       !> Replace an existing value.
       integer(c_int), value :: overwrite
     end function posix_setenv
+    !> execv(3): returns only if it fails.
+    integer(c_int) function posix_execv(path, argument) bind(c, name="execv")
+      import :: c_char, c_int, c_ptr
+      character(kind=c_char), intent(in) :: path(*)
+      !> Texts ended by a null, and a null pointer at the end.
+      type(c_ptr), intent(in) :: argument(*)
+    end function posix_execv
     !> fopen(3): unlike open(2), it has no variable arguments.
     type(c_ptr) function c_fopen(path, mode) bind(c, name="fopen")
       import :: c_char, c_ptr

@@ -7,7 +7,7 @@ module dd3_linalg_multifrontal
   use dd3_base_kinds, only : wp, i8
   use dd3_base_threads, only : most_threads
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, cause_solver
-  use dd3_external_blas_threads, only : use_one_blas_thread
+  use dd3_external_blas, only : use_one_blas_thread
   use dd3_linalg_dense, only : dgemv, dlaswp, dtrsv
   use dd3_linalg_front_assembly, only : add_border, add_part, put_blocks
   use dd3_linalg_front_branches, only : find_branches, front_products, front_work_t

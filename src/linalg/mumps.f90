@@ -7,7 +7,7 @@ module dd3_linalg_mumps
   use dd3_base_text, only : to_text
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, cause_factor_files, &
       cause_singular, cause_solver, cause_solver_memory
-  use dd3_external_blas_threads, only : use_one_blas_thread
+  use dd3_external_blas, only : use_one_blas_thread
   use dd3_external_mumps_library, only : dmumps, dmumps_struc
   use dd3_linalg_front_tree, only : choose_ordering
   use dd3_linalg_matrix, only : block_matrix_t, copy_values

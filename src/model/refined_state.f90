@@ -65,18 +65,21 @@ contains
     type(refinement_t), intent(in) :: origin
     type(state_t), intent(out) :: new
 
-    real(wp), allocatable :: strain(:, :, :)
+    real(wp), allocatable :: carried(:, :, :)
     integer :: k
 
     new = old
     new%x = sheet%x
     call follow_parents(model, new%x)
     call new_sheet_state(new%sheet, model, sheet)
+    call origin%carry_points(reshape(merge(1.0_wp, 0.0_wp, old%sheet%plastic), &
+        [1, shape(old%sheet%plastic)]), carried)
+    new%sheet%plastic(:, :) = carried(1, :, :) > 0.5_wp
     call carry_contact(old_model, old%configuration_t, model, origin, new)
     new%start%x = origin%interpolate_nodal(old%start%x)
     call origin%carry_points(reshape(old%start%plastic_strain, &
-        [1, shape(old%start%plastic_strain)]), strain)
-    new%start%plastic_strain = strain(1, :, :)
+        [1, shape(old%start%plastic_strain)]), carried)
+    new%start%plastic_strain = carried(1, :, :)
     do k = 1, size(new%term)
       call new%term(k)%of%extend(old_model, model, new%configuration_t)
     end do

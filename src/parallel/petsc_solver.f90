@@ -8,7 +8,7 @@ submodule (dd3_linalg_petsc_solver) dd3_parallel_petsc_solver
   use dd3_base_ranks, only : broadcast_reals, n_ranks, start_ranks, sum_over_ranks
   use dd3_base_text, only : to_text
   use dd3_base_verdict, only : verdict_t, verdict_converged, verdict_retry, cause_solver
-  use dd3_external_blas_threads, only : use_one_blas_thread
+  use dd3_external_blas, only : use_one_blas_thread
   use dd3_external_petsc, only : insert_values, ksp_create, ksp_destroy, ksp_get_converged_reason, &
       ksp_get_iteration_number, ksp_get_pc, ksp_reset, ksp_set_from_options, &
       ksp_set_initial_guess_nonzero, &

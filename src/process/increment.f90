@@ -57,7 +57,6 @@ contains
         stepper%attempt%verdict)
     if (stepper%attempt%verdict%outcome /= verdict_converged) return
     call limit_increment(model, committed, stepper)
-    stepper%part = 1.0_wp
   end subroutine prepare_increment
 
   !> Make one attempt: the predicted state with the present r, corrected until it is in equilibrium

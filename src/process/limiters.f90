@@ -53,7 +53,7 @@ contains
 
   !> Set the factor r of an increment, the smallest of all bounds, eq. (18), of equal ones the
   !> first: those that r_min overrides, then the bound by earlier increments, the end of the phase
-  !> and the other limiters; of the first increment on a refined sheet a part of it.
+  !> and the other limiters.
   subroutine limit_increment(model, state, stepper)
     type(model_t), intent(in) :: model
     !> The committed state.
@@ -85,8 +85,6 @@ contains
         call end_after("layer", progress_left(state%progress))
       end if
       call end_after("output", next_output_progress(model%output, phase, state) - state%progress)
-      attempt%part = stepper%part
-      if (stepper%part < 1.0_wp) limit = limit_t(r=stepper%part*limit%r, limiter="refinement")
       if (model%part%divided) call copy_limit(0, limit)
     end associate
 

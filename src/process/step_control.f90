@@ -35,8 +35,6 @@ module dd3_process_step_control
     logical :: releases = .false.
     !> Strength of the viscous forces of a release, and its range, N/mm.
     real(wp) :: viscosity = 0.0_wp, viscous_range(2) = 0.0_wp
-    !> Part of what the limiters allow that r is.
-    real(wp) :: part = 1.0_wp
     !> Whether the phase ends with the increment.
     logical :: ends_phase = .false.
     !> Factor r with its limiter.
@@ -59,9 +57,6 @@ module dd3_process_step_control
     type(system_t) :: system
     type(prediction_t) :: prediction
     type(attempt_t) :: attempt
-    !> Part of what the limiters allow that the next increment makes, as it is the first one on a
-    !> refined sheet.
-    real(wp) :: part = 1.0_wp
   end type stepper_t
 
   !> Factor on r after a failed attempt, and the smallest r of another one.
@@ -137,7 +132,7 @@ contains
     !> Accepted.
     type(attempt_t), intent(in) :: attempt
 
-    if (attempt%after_failure) state%r_cap = attempt%limit%r/attempt%part
+    if (attempt%after_failure) state%r_cap = attempt%limit%r
     if (state%r_cap < huge(1.0_wp)/release_growth) then
       state%r_cap = merge(release_growth, growth, attempt%releases)*state%r_cap
     end if

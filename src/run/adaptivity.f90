@@ -38,7 +38,7 @@ module dd3_run_adaptivity
   use dd3_tools_turn_field, only : new_turn_field, turn_field_t
   implicit none
   private
-  public :: adaptivity_t, ahead, most_returns, new_adaptivity, settling
+  public :: adaptivity_t, ahead, most_returns, new_adaptivity
 
   !> Travel of the tools within which a radius makes an element be divided, and that within which
   !> all are divided then, over the length of the element.
@@ -54,10 +54,6 @@ module dd3_run_adaptivity
   real(wp), parameter :: longest = 8.0_wp
   !> Relative difference of lengths that are equal.
   real(wp), parameter :: round_off = 1.0e-6_wp
-  !> Part of what the limiters allow that the first increment on a refined sheet makes. It brings
-  !> what the transfer has put out of balance into balance in as many iterations as other ones; in a
-  !> whole increment they are twice as many, most of them shortened.
-  real(wp), parameter :: settling = 0.2_wp
   !> Largest number of increments made again one after another.
   integer, parameter :: most_returns = 3
 

@@ -8,7 +8,7 @@ module dd3_run_model
   use dd3_base_interrupt, only : interrupted, interruption, interruption_code
   use dd3_base_log, only : log_t
   use dd3_base_message, only : message_list_t
-  use dd3_base_ranks, only : any_rank, largest_over_ranks, n_ranks
+  use dd3_base_ranks, only : largest_over_ranks, n_ranks
   use dd3_base_text, only : axis_name, to_text
   use dd3_base_verdict, only : verdict_converged, verdict_retry, verdict_t, &
       cause_beyond_until, cause_no_progress
@@ -33,7 +33,7 @@ module dd3_run_model
   use dd3_report_attempt_report, only : failure_message, status_row
   use dd3_report_refinement_warnings, only : late_warning
   use dd3_report_phase_warnings, only : end_notes, start_notes
-  use dd3_run_adaptivity, only : adaptivity_t, most_returns, new_adaptivity, settling
+  use dd3_run_adaptivity, only : adaptivity_t, most_returns, new_adaptivity
   use dd3_run_phase_closing, only : close_phase
   use dd3_run_pin_load, only : observe_pins
   use dd3_run_thread_choice, only : new_thread_choice, thread_choice_t
@@ -263,7 +263,6 @@ contains
       call take_up(model, run%stepper%system, run%committed, imbalance, error)
       if (allocated(error)) return
       run%trial = run%committed
-      if (any_rank(imbalance > 0.0_wp)) run%stepper%part = settling
       call add_change(model, run%committed, before, imbalance, again)
       call log%say(model%change(size(model%change))%report(log%phase, &
           model%phase(run%committed%phase)%control > 0))
