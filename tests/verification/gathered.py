@@ -231,8 +231,8 @@ One element, free lateral faces, Swift's law, at 0, 45 and 90 degrees to rolling
     Section("V5 Biaxial tension, plane strain and shear by Hill's criterion", """
 Stress over the flow stress at a material point, Hill (1948): 1/√(F + G) in equal biaxial tension; in plane strain along
 rolling at a strain of 0.3 an integration of the rates with the elastic strains, which s22 = s11 H/(F + H) neglects
-(0.930716, 0.08 % more: elastic strains increase with the flow stress); 1/√(2N) in shear. Deck
-`tests/verification/points.dat`; forces of an element on the whole path in the cases `equibiaxial` and `plane_strain`.
+(0.930716, 0.08 % more); 1/√(2N) in shear. Deck `tests/verification/points.dat`; forces of an element on the whole path
+in the cases `equibiaxial` and `plane_strain`.
 """, ratios),
     Section("V6 Hypoelastic simple shear", """
 Simple shear to 4 of an elastic material in 160 steps. Dienes (1979) for the Jaumann rate: s12 = G sin γ, s11 = G (1 -
