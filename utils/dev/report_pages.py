@@ -8,7 +8,7 @@
 Runs each input file of input_files that has a blank (finished runs are kept), makes its report, and loads it in windows
 of 1280 and 520 pixels: every picture must be shown, nothing be wider than the window, and no number be nan or inf.
 Writes <input file>.png beside the runs; --write puts smaller copies of those on docs/reports/pages.md into
-docs/images/reports.
+docs/images/reports, and the table of the runs into the page.
 """
 
 import argparse
@@ -22,13 +22,15 @@ from pathlib import Path
 from PIL import Image
 
 from dd3.errors import Problem, run
+from dd3.pages import put_table, table
 from dd3.progress import each
 from dd3.run import read_job
 
 ROOT = Path(__file__).resolve().parents[2]
 DECKS = ROOT / "input_files"
 PICTURES = ROOT / "docs" / "images" / "reports"
-SHOWN = ("solid_shell", "draw_bead", "hat", "round_cup", "rail", "square_cup")  # on docs/reports/pages.md
+PAGE = ROOT / "docs" / "reports" / "pages.md"
+SHOWN = ("solid_shell", "draw_bead", "hat", "round_cup", "rail", "square_cup")  # on the page
 MADE_TOOLS = ("tutorial", "hood", "panel")  # folders of input files
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 WIDTHS = (1280, 520)
@@ -109,12 +111,16 @@ def report(options, name, folder):
 
 
 def write(options, names):
-    """Put small pictures into the documents."""
+    """Put small pictures, and the table of the runs of the page, into the documents."""
     PICTURES.mkdir(parents=True, exist_ok=True)
     for name in names:
         with Image.open(options.work / f"{name}.png") as image:
             image.thumbnail(SMALL)
             image.convert("P", palette=Image.Palette.ADAPTIVE).save(PICTURES / f"{name}.png", optimize=True)
+    jobs = {name: read_job(options.work / f"{name}.out") for name in SHOWN if (options.work / f"{name}.out").exists()}
+    rows = [[name, str(job["counts"]["increments"]), " ".join(sorted({w["code"] for w in job["warnings"]}))]
+            for name, job in jobs.items()]
+    put_table(PAGE, "reports", table(["input file", "increments", "warnings"], rows), jobs.values())
 
 
 def main():
