@@ -116,9 +116,9 @@ contains
     type(description_t), allocatable :: law(:)
     integer :: k
 
-    text = newline//"# Laws"//newline//newline//"`dd3imp --help law` and the page of a law have"// &
-        " its parameters with meaning, unit, bounds and"//newline//"default, and its source."// &
-        newline
+    text = newline//"# Laws"//newline//newline//"`dd3imp --help law` and the pages of the "// &
+        "[criteria](yield_criteria.md) and the [other laws](hardening_laws.md)"//newline// &
+        "have the parameters with meaning, unit, bounds and default."//newline
     do k = 1, size(kinds)
       call describe_laws(kinds(k), law)
       text = text//table_of(keys(k), law)
@@ -133,22 +133,17 @@ contains
     heading = newline//"## `"//trim(key)//" = law key=value ...`"//newline//newline
   end function heading
 
-  !> Return the laws of a key with the names of their parameters in Markdown.
+  !> Return the laws of a key in Markdown.
   function table_of(key, law) result(text)
     character(len=*), intent(in) :: key
     type(description_t), intent(in) :: law(:)
     character(len=:), allocatable :: text
 
-    integer :: i, p
+    integer :: i
 
-    text = heading(key)//"| law | meaning | parameters | page |"//newline//"|---|---|---|---|"// &
-        newline
+    text = heading(key)//"| law | meaning |"//newline//"|---|---|"//newline
     do i = 1, size(law)
-      text = text//"| `"//trim(law(i)%name)//"` | "//escaped(trim(law(i)%title))//" |"
-      do p = 1, size(law(i)%rows)
-        text = text//" `"//trim(law(i)%rows(p)%name)//"`"
-      end do
-      text = text//" | [page](laws/"//trim(law(i)%name)//".md) |"//newline
+      text = text//"| `"//trim(law(i)%name)//"` | "//escaped(trim(law(i)%title))//" |"//newline
     end do
   end function table_of
 

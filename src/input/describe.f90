@@ -36,7 +36,7 @@ contains
       if (row%form /= "") text = "the name of a "//trim(row%form)
       if (row%choices /= "") text = "one of: "//trim(row%choices)
     case (kind_text)
-      text = "a text, in quotes if it contains blanks"
+      text = "a text"
     case (kind_reals)
       text = many//" numbers"
     case (kind_integers)
@@ -45,7 +45,7 @@ contains
       text = many//" words"
       if (row%choices /= "") text = "any of: "//trim(row%choices)
     case (kind_law)
-      text = "a law and its parameters: name key=value key=value ..."
+      text = "law key=value ..."
     case default
       text = alternatives(row)
     end select

@@ -136,18 +136,16 @@ contains
       row("young", kind_real, "MPa", "", "Young's modulus", lower=zero, lower_open=.true.), &
       row("poisson", kind_real, "", "", "Poisson's ratio", lower=-1.0_wp, upper=0.5_wp, &
           lower_open=.true., upper_open=.true.), &
-      row("yield", kind_law, "", "", "yield criterion and its parameters"), &
-      row("hardening", kind_law, "", "", "hardening law and its parameters"), &
+      row("yield", kind_law, "", "", "yield criterion"), &
+      row("hardening", kind_law, "", "", "hardening law"), &
       row("backstress", kind_law, "", "none", &
-          "back-stress law and its parameters, or none; several are summed", repeatable=.true.), &
+          "back-stress law; several are summed", repeatable=.true.), &
       row("modulus", kind_law, "", "none", &
-          "law of Young's modulus over the plastic strain and its parameters; none: constant"), &
+          "law of Young's modulus over the plastic strain"), &
       row("rate", kind_law, "", "none", &
-          "law of the strain rate and its parameters: a factor on the flow stress; none: "// &
-          "independent of the rate"), &
+          "law of the strain rate: a factor on the flow stress"), &
       row("temperature", kind_law, "", "none", &
-          "law of the temperature and its parameters: a factor on the flow stress; none: "// &
-          "independent of the temperature"), &
+          "law of the temperature: a factor on the flow stress"), &
       row("initial_temperature", kind_real, "C", "20", "temperature of the undeformed material"), &
       row("heat_capacity", kind_real, "mJ/(t K)", "-", "heat capacity: plastic work heats each "// &
           "point, with the density; 4.6e8 for steel, 9e8 for aluminium; left out: no heating", &

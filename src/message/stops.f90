@@ -42,10 +42,7 @@ contains
           "What the message expects."), &
       row("E206", "tool that would return inside the sheet", &
           "A tool that was released is named again while it lies inside the sheet.", &
-          "Give its path by `move` in the phase that releases it, or name it later."), &
-      row("E207", "sheet that cannot be refined", &
-          "Elements were to be divided (`adaptive`), and the mesh does not allow it.", &
-          "`--restart` with `adaptive = 0`, which keeps the mesh as it is.")]
+          "Give its path by `move` in the phase that releases it, or name it later.")]
   end function surroundings
 
   !> Return the failures of elements and of the stress update.

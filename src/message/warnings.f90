@@ -17,12 +17,12 @@ contains
           "It lies outside 1e3 to 1e6 MPa: most often another unit than MPa.", &
           "Check `young` of the material; stresses are in MPa, lengths in mm, forces in N."), &
       row("W002", "unusual yield stress in the rolling direction", &
-          "The yield criterion makes the material yield there far from the flow stress of its "// &
-          "hardening law; in most published sets the two agree.", &
+          "The criterion makes the material yield there at less than 0.8 or more than 1.25 "// &
+          "times the flow stress of its hardening law.", &
           "Check the parameters of the criterion, their order and their convention."), &
       row("W003", "unusual initial flow stress", &
-          "It is very small or very large compared with Young's modulus: another unit, or a "// &
-          "parameter of the hardening law in the wrong place.", &
+          "It is above a tenth or below 1e-5 of Young's modulus: another unit, or a parameter "// &
+          "in the wrong place.", &
           "Check the parameters of the hardening law."), &
       row("W004", "unusual thickness of the sheet", &
           "It lies outside 0.01 to 100 mm.", "Check the unit and the order of `size`."), &
@@ -32,11 +32,12 @@ contains
       row("W006", "large tolerance of the corrector", &
           "Above 0.02 forces may be inaccurate.", "A smaller `tolerance` in `*NEWTON`."), &
       row("W007", "small search distance of the tools", &
-          "Nodes may pass a tool before it is found.", &
+          "Below a tenth of the thickness nodes may pass a tool before it is found.", &
           "Leave `search_distance` out: its default is the thickness of the sheet."), &
       row("W008", "load on nodes that are held", &
           "Supports hold some nodes of the set in the direction of the load and carry their "// &
-          "part of it.", "Load a set without these nodes, if the sheet should carry all of it."), &
+          "part of it.", &
+          "Load a set without these nodes."), &
       row("W009", "elements too long for bending", &
           "Elements `hex8` of this length are too stiff where the sheet bends.", &
           "At most half a thickness there, or the element `solid_shell`."), &
@@ -54,13 +55,13 @@ contains
           "The input takes the law in spite of it; the stress update may fail.", &
           "Parameters of a convex surface."), &
       row("W014", "too little memory", &
-          "The job needs more memory than the machine has left: it would be slow, or be ended "// &
-          "by the system.", "A mesh with fewer elements, or `method = cgs` in `*SOLVER`."), &
+          "The job needs more memory than the machine has left.", &
+          "A mesh with fewer elements, or `method = cgs` in `*SOLVER`."), &
       row("W020", "axes of the material out of the sheet", &
           "`normal_direction` is not the normal of the sheet, the sheet is curved at the "// &
-          "start, or `rolling_direction` does not lie in it: an orthotropic law takes other "// &
-          "directions.", "`normal_direction` left out, for the normal of the sheet; "// &
-          "`rolling_direction` in its plane."), &
+          "start, or `rolling_direction` does not lie in it.", &
+          "`normal_direction` left out, for the normal of the sheet; `rolling_direction` in "// &
+          "its plane."), &
       row("W021", "unusual r-value", &
           "It lies outside 0.05 to 25: most often per cent, or parameters in a wrong order.", &
           "Ratios of strains, such as r0=1.79; the convention of the criterion's parameters."), &
@@ -107,8 +108,8 @@ contains
       row("W106", "yielding while forces of lost constraints fade", &
           "The plastic strain increased in a phase in which nothing acts but fading forces of "// &
           "lost constraints: the free shape depends on how they fade.", &
-          "Let the run that forms the sheet end with `unload = on`, before the sheet is taken "// &
-          "over; lead nodes back by `displace` before they are freed, and compare."), &
+          "Let the run that forms the sheet end with `unload = on`; lead nodes back by "// &
+          "`displace` before they are freed, and compare."), &
       row("W107", "reactions of chosen supports", &
           "The supports that the program chose carry forces at the end of the unloading: the "// &
           "forces on the sheet are not in equilibrium.", &
@@ -136,8 +137,7 @@ contains
           "Check `target`; strains are no percentages."), &
       row("W114", "perturbed pivot", &
           "A pivot of the linear system vanished and was perturbed: hardly anything resists "// &
-          "this displacement. `perturbed` in status.csv counts such pivots; a solution that "// &
-          "does not satisfy the system is refused.", &
+          "this displacement. `perturbed` in status.csv counts such pivots.", &
           "Supports or contact that hold the part of the sheet, or the tool, that is named."), &
       row("W115", "energy balance that is not closed", &
           "At the end of a forming run `energy_error` is more than 5 % of the work: forces or "// &
@@ -155,52 +155,49 @@ contains
 
     list = [ &
       row("W117", "elements divided too late", &
-          "An increment was made again on finer meshes as often as allowed and still bends the "// &
-          "sheet by more than 1.3 times `adaptive_angle` over elements that could be divided. "// &
-          "It is accepted, and they are divided before the next one: what they were too long "// &
-          "for stays in their stresses.", "Smaller increments (`trial`, `rotation` in "// &
-          "`*LIMITS`), or shorter elements at the start."), &
+          "An increment was made again on finer meshes as often as allowed and still bends "// &
+          "elements that could be divided by more than 1.3 times `adaptive_angle`. It is "// &
+          "accepted, and they are divided before the next one.", &
+          "Smaller increments (`trial`, `rotation` in `*LIMITS`), or shorter elements at the "// &
+          "start."), &
       row("W118", "elements that are not divided further", &
           "The sheet is bent by more than 1.5 times `adaptive_angle` over elements of the "// &
-          "highest level, or of the least length, at the end of the phase. Where a tool enters "// &
-          "the sheet between its nodes, W109 tells it instead.", &
+          "highest level, or of the least length, at the end of the phase.", &
           "The `adaptive` or `adaptive_size` that the message gives."), &
       row("W119", "sheet that is not formed to the tools", &
           "At the end of its path a punch is more than 0.2 thicknesses before the place where "// &
-          "it would pinch the sheet against the tool across, or the sheet lies more than 0.1 "// &
-          "thicknesses off both.", "The whole path of the punch; a tool across that ends where "// &
-          "the part does, if it is deeper than the part by design."), &
+          "it would pinch the sheet, or the sheet lies more than 0.1 thicknesses off both "// &
+          "tools.", &
+          "The whole path of the punch; a tool across that ends where the part does."), &
       row("W120", "sheet beyond the holder", &
           "When the holder begins to press, the rim of the sheet lies more than a thickness "// &
-          "beyond its outer edge, where nothing keeps the sheet from wrinkling, and no other "// &
-          "tool on that side of the sheet is nearer.", "A larger holder, or a smaller blank."), &
+          "beyond its outer edge, where nothing keeps the sheet from wrinkling.", &
+          "A larger holder, or a smaller blank."), &
       row("W121", "support that carries a part of the tool force", &
-          "A support at a few nodes, which are not all nodes of a plane, carries more than 1 % "// &
-          "of the largest force on a tool at the end of the phase, and more than the weight of "// &
-          "the sheet: it shapes the sheet, which it should only hold in its place.", &
+          "A support at a few nodes, which are not all nodes of a plane, carries more than 1 "// &
+          "% of the largest force on a tool at the end of the phase, and more than the weight "// &
+          "of the sheet: it shapes the sheet.", &
           "Supports at other nodes or in fewer directions; none where tools and friction hold "// &
           "the sheet. `pin`, if it is a locating pin."), &
       row("W122", "pin that widens its hole", &
-          "The mean bearing pressure of a locating pin, its force over diameter and thickness, "// &
-          "exceeds the yield stress of the sheet there in some increment of the phase.", &
+          "The force of a locating pin over diameter and thickness exceeds the yield stress "// &
+          "of the sheet there in some increment of the phase.", &
           "A pad with more force or friction, larger pins, or more of them."), &
       row("W123", "sheet that has necked", &
-          "At the end of the run, or where it stops, the sheet is thinned by more than 40 %: "// &
-          "above the forming limits of sheets in plane strain. The strains concentrate within "// &
-          "the length of an element, so that the thinning depends on the mesh.", &
+          "The sheet is thinned by more than 40 %, above the forming limits of sheets in "// &
+          "plane strain. The thinning depends on the mesh from there on.", &
           "Larger radii, less restraint and friction, a smaller drawing ratio; for the limit "// &
-          "of the material itself `dd3 report`."), &
+          "of the material `dd3 report`."), &
       row("W124", "sheet that has slid under a punch", &
-          "Every node on the level faces of the punch has moved across its path, by more than "// &
-          "half the thickness: the sheet is drawn over the punch from one side. Holes made "// &
-          "before lie off their places, and the punch leaves marks.", &
+          "Every node on the level faces of the punch has moved across its path by more than "// &
+          "half the thickness: holes made before lie off their places, and the punch leaves "// &
+          "marks.", &
           "A pad against the punch or locating pins; walls of equal height; more restraint on "// &
           "the side from which the sheet is drawn."), &
       row("W125", "curve of a cut beyond the sheet", &
           "A curve of `*TRIM` that bounds what stays goes beyond the border of the sheet, "// &
-          "where this stays as it is; or a curve lies beside the sheet and cuts nothing, as "// &
-          "holes of a whole part do beside a quarter of it. There is no warning of a curve that "// &
-          "is symmetric to a side of the sheet, as that of a whole part to its half.", &
+          "where this stays as it is; or it lies beside the sheet and cuts nothing, as holes "// &
+          "of a whole part do beside a quarter of it.", &
           "Curves on the sheet, or a larger blank; nothing for holes beside a quarter.")]
   end function sheet_warnings
 
@@ -221,17 +218,20 @@ contains
       row("N104", "mean gap in the contact layers", &
           "The compliant contact keeps the sheet off the tools by this distance.", &
           "A smaller `layer` in `*CONTACT`, if it matters."), &
-      row("N106", "forces of a sheet that is taken over", "Tools, supports and parts of the "// &
-          "sheet that acted on it in the other run are gone; what they leave fades over the "// &
-          "first phase.", "A first phase with `unload = on`, if they are large."), &
+      row("N106", "forces of a sheet that is taken over", &
+          "Forces of what acted on the sheet in the other run; they fade over the first "// &
+          "phase.", &
+          "A first phase with `unload = on`, if they are large."), &
       row("N105", "phase without increments", &
           "The condition of its early end holds at its start.", "Check `until` of the phase."), &
       row("N107", "sheet that is formed to the tools", &
-          "At the end of its path the punch is within 0.2 thicknesses of the place where it "// &
-          "would pinch the sheet, which lies on the punch or the tool across.", "None."), &
+          "The punch is within 0.2 thicknesses of the place where it would pinch the sheet, "// &
+          "which lies on the punch or the tool across.", &
+          "None."), &
       row("N108", "force of a locating pin", &
-          "The largest force on a support with `pin` in the phase, and its mean bearing "// &
-          "pressure, which is below the yield stress of the sheet.", "None."), &
+          "The largest force on a support with `pin` in the phase, and its bearing pressure, "// &
+          "which is below the yield stress of the sheet.", &
+          "None."), &
       row("N110", "deflection of elastic tools", &
           "Largest deflection of a tool with `compliance` at the end of the phase, "// &
           "and the contact pressure there.", "None.")]

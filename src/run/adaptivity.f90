@@ -218,7 +218,7 @@ contains
     type(model_t), intent(inout) :: model
     !> Committed state; its internal forces are left to the caller.
     type(state_t), intent(inout) :: state
-    !> Set if the mesh has no layers.
+    !> Set if the refined sheet is refused.
     type(error_t), allocatable, intent(out) :: error
 
     type(model_t) :: old_model
@@ -231,11 +231,7 @@ contains
     logical :: regular, divided
 
     sheet = sheet_of(model, state)
-    call new_grid(grid, sheet%mesh, regular)
-    if (.not. regular) then
-      call fatal_error(error, "the sheet cannot be refined: it has no layers", "E207")
-      return
-    end if
+    call new_grid(grid, sheet%mesh, regular)  ! in layers, or the set-up would have refused it
     call mark_balanced(sheet%mesh, grid, self%spec%levels, marked)
     if (.not. any(marked)) return
     divided = model%part%divided
@@ -257,7 +253,7 @@ contains
     end if
     call rebuild_model(model, case, sheet, errors)
     if (errors%count > 0) then
-      call fatal_error(error, "the refined sheet has an error: "//errors%item(1)%message, "E207")
+      call fatal_error(error, "the refined sheet: "//errors%item(1)%message, errors%item(1)%code)
       return
     end if
     call refined_state(old_model, old, model, refined, origin, state)

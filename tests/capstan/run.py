@@ -3,8 +3,7 @@
 #: {"name": "capstan", "timeout": 600}
 """A thin strip that slides over a quarter of a cylinder, with several thicknesses and settings of the contact.
 
-    run.py --program build/release/dd3imp --work build/capstan           check
-    run.py --program build/release/dd3imp --work build/capstan --write   and put the table into docs/reports/capstan.md
+    run.py --program build/release/dd3imp --work build/capstan
 
 The ratio of the tensions is exp(mu pi/2) = 1.25382 (Euler, Eytelwein). Each run must reach its end within 2 % of it,
 with no node more than 1e-3 mm inside the cylinder in any increment, or stop with a message. The deck is that of
@@ -15,13 +14,12 @@ import pathlib
 import re
 import sys
 
-from dd3.pages import put_table, table
+from dd3.pages import table
 from dd3.programs import parser_of_runs
 from dd3.tables import read_table, totals
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CASE = ROOT / "tests" / "cases" / "capstan"
-REPORT = ROOT / "docs" / "reports" / "capstan.md"
 sys.path.insert(0, str(ROOT / "tests"))
 from bench import Bench  # noqa: E402
 
@@ -49,7 +47,7 @@ def deck(thickness, contact):
 
 
 def measure(bench, thickness, contact):
-    """Run one setting; return its row of the table, what is wrong, and its run.json."""
+    """Run one setting; return its row of the table, and what is wrong."""
     name = re.sub("[ =]+", "_", f"{thickness:g} {contact}".strip())
     found = bench.run(name, deck(thickness, contact), codes=(0, 3))
     total = totals(read_table(found.folder / "status.csv"))
@@ -71,20 +69,16 @@ def measure(bench, thickness, contact):
     row = [f"{thickness:g}", f"`{contact}`" if contact else "", end,
            str(total.increments), str(total.cutbacks),
            str(total.iterations), *results, f"{depth:.1e}"]
-    return row, [f"thickness {row[0]}, {contact}: {text}" for text in wrong], found.job
+    return row, [f"thickness {row[0]}, {contact}: {text}" for text in wrong]
 
 
 def main():
     """Run all settings; exit code 1 if one of them ends wrong."""
-    parser = parser_of_runs(__doc__)
-    parser.add_argument("--write", action="store_true", help="put the table into the report")
-    options = parser.parse_args()
+    options = parser_of_runs(__doc__).parse_args()
     bench = Bench(options.program, options.work)
-    rows, wrong, jobs = zip(*(measure(bench, *setting) for setting in SETTINGS), strict=True)
+    rows, wrong = zip(*(measure(bench, *setting) for setting in SETTINGS), strict=True)
     wrong = [fault for faults in wrong for fault in faults]
     print(table(HEAD, rows), *wrong, sep="\n")
-    if options.write:
-        put_table(REPORT, "strips", table(HEAD, rows), jobs)
     sys.exit(1 if wrong else 0)
 
 

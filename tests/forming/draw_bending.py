@@ -158,11 +158,11 @@ def main():
         name = "sheets" if "," in law else "shape"
         jobs[name].append(read_job(folder))
         rows[name].append(
-            [holder, law, f"{175/mesh:.2f}", f"{theta1:.1f}", f"{theta2:.1f}", f"{rho:.0f}", *studies.effort(folder)])
+            [holder, law, f"{175/mesh:.2f}", f"{theta1:.1f}", f"{theta2:.1f}", f"{rho:.0f}",
+             studies.increments(folder)])
         if "," not in law:
             lines[f"{holder}, {law}, {175/mesh:.2f} mm"] = line
-    head = ["holder", "hardening", "element, mm", "theta1, degrees", "theta2, degrees", "rho, mm", "increments",
-            "iterations", "seconds"]
+    head = ["holder", "hardening", "element, mm", "theta1, degrees", "theta2, degrees", "rho, mm", "increments"]
     for name, found in rows.items():
         print(studies.table(head, found))
         if options.write and found:

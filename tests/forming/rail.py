@@ -27,7 +27,7 @@ THICKNESS = 0.8
 MESHES = ["28 16", "54 32", "80 32", "54 64", "54 128"]  # along and across the rail; the finest last
 HEAD = ["material", "mesh", "elements", "flange", "bottom", "twist at 60 mm", "twist, 10 to 90 %", "largest distance, mm",
         "free shape from the finest's, mm: rms, largest", "thinning, %",
-        "from the finest's, %: rms, largest", "opposite nodes, %", "increments", "iterations", "seconds"]
+        "from the finest's, %: rms, largest", "opposite nodes, %", "increments"]
 
 
 class Rail:
@@ -137,7 +137,7 @@ def row_of(material, mesh, rail, finest, folder):
     return [material.upper(), " x ".join(mesh.split()), str(len(rail.sheet.corners())), *(f"{v:.2f}" for v in values),
             f"{rail.found.distance().max():.2f}", of_differences(apart) if rail is not finest else "",
             extremes(rail.thinning()), of_differences(difference) if rail is not finest else "",
-            extremes(rail.thinning_by_nodes()), *studies.effort(folder)]
+            extremes(rail.thinning_by_nodes()), studies.increments(folder)]
 
 
 def main():

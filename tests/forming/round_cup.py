@@ -119,13 +119,13 @@ def main():
         folder = studies.make(options, name.replace(" ", "_"), DECK,
                               {"material": material, "divisions": divisions, "levels": 0})
         if folder:
-            cups[name], efforts[name] = Cup(folder), studies.effort(folder)
+            cups[name], efforts[name] = Cup(folder), [studies.increments(folder)]
             jobs.append(read_job(folder))
     estimates = {law: estimate(options.program, material) for law, material in MATERIALS.items()}
     rows = [row(name, cup.angles, cup.heights, efforts[name]) for name, cup in cups.items()]
-    rows += [row(f"{law}, estimate", *values, ["", "", ""]) for law, values in estimates.items()]
+    rows += [row(f"{law}, estimate", *values, [""]) for law, values in estimates.items()]
     heights = studies.table(["run", *(f"{angle}°" for angle in ANGLES), "mean", "range", "ears", "at, degrees",
-                             "increments", "iterations", "seconds"], rows)
+                             "increments"], rows)
     thickness = studies.table(["run", "smallest", "largest", "rim, smallest", "rim, largest"],
                               [[name, *(f"{value:.3f}" for value in (*cup.thickness, cup.rim.min(), cup.rim.max()))]
                                for name, cup in cups.items()])

@@ -58,7 +58,7 @@ def draw(cups):
 def main():
     """Make the runs and the table."""
     options = studies.arguments(__doc__)
-    cups, jobs, rows = {}, [], [row(name, ANGLES, np.array(heights), [""]*5) for name, heights in PUBLISHED.items()]
+    cups, jobs, rows = {}, [], [row(name, ANGLES, np.array(heights), [""]*3) for name, heights in PUBLISHED.items()]
     for name, values in RUNS.items():
         folder = studies.make(options, name.replace(", ", "_").replace(" ", "_"), DECK,
                               {**values, "levels": 0})
@@ -66,9 +66,9 @@ def main():
             cup = cups[name] = Cup(folder, BLANK)
             jobs.append(read_job(folder))
             rows.append(row(name, cup.angles, cup.heights,
-                            [*(f"{value:.3f}" for value in cup.thickness), *studies.effort(folder)]))
+                            [*(f"{value:.3f}" for value in cup.thickness), studies.increments(folder)]))
     heading = ["", *(f"{angle}°" for angle in ANGLES), "mean", "range", "ears", "at, degrees", "thinnest", "thickest",
-               "increments", "iterations", "seconds"]
+               "increments"]
     text = studies.table(heading, rows)
     print(text)
     if options.write and len(cups) == len(RUNS):
@@ -92,9 +92,9 @@ def elastic_tools(options, heading):
         cup = Cup(folder, BLANK)
         jobs.append(read_job(folder))
         rows.append([*row(name, cup.angles, cup.heights, [f"{value:.3f}" for value in cup.thickness]),
-                     *(largest(folder, tool) for tool in ("die", "punch")), *studies.effort(folder)])
+                     *(largest(folder, tool) for tool in ("die", "punch")), studies.increments(folder)])
     complete = len(rows) == len(ELASTIC_RUNS)
-    text = studies.table([*heading[:-3], "die deflects by", "punch deflects by", *heading[-3:]], rows)
+    text = studies.table([*heading[:-1], "die deflects by", "punch deflects by", *heading[-1:]], rows)
     print(text)
     if options.write and complete:
         put_table(REPORT, "elastic", text, jobs)

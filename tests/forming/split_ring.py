@@ -99,9 +99,9 @@ def main():
         found = results[name] = rings(options, label, folder)
         jobs.append(read_job(folder))
         rows.append([name, *(f"{found[place]:.2f}" if place in found else "" for place in PLACES),
-                     *studies.effort(folder)])
+                     studies.increments(folder)])
     text = studies.table(["law, criterion, mesh", *(f"{place:g} to {place + HEIGHT:g} mm" for place in PLACES),
-                          "increments", "iterations", "seconds"], rows)
+                          "increments"], rows)
     print(text)
     if options.write:
         put_table(REPORT, "opening", text, jobs)

@@ -148,9 +148,9 @@ def tables(cups):
     found = {
         "draw-in": studies.table(
             ["mesh"] + [f"{quantity} at {travel:g} mm" for travel in TRAVELS for quantity in ("DX", "DY", "DD")]
-            + ["increments", "iterations", "seconds"],
+            + ["increments"],
             [[name] + [f"{value:.2f}" for travel in TRAVELS for value in cup.draw_in(travel)]
-             + studies.effort(cup.folder) for name, cup in cups.items()]),
+             + [studies.increments(cup.folder)] for name, cup in cups.items()]),
         "force": studies.table(
             ["mesh", *(f"{step} mm" for step in STEPS)],
             [[name, *(f"{force:.2f}" for force in cup.forces())] for name, cup in cups.items()]),

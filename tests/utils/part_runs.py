@@ -28,6 +28,8 @@ ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "parts.md"
 TITLES = ["part", "tools", "patches", "processor time, s", "thinning estimated, %", "increments", "cut-backs",
           "processor time, min", "path left, t", "off the tools, t", "thinning, %", "springback, mm", "warnings"]
+ON_THE_PAGE = [title for title in TITLES
+               if title not in ("tools", "patches", "processor time, s", "increments", "cut-backs")]
 
 
 def timed(words):
@@ -102,7 +104,9 @@ def main():
         rows.append([*row, *(drawn(name, options.work, options.program) if ready else [""] * (len(TITLES) - 4))])
         print("| " + " | ".join(rows[-1]) + " |", flush=True)
     if options.write:
-        put_table(PAGE, "runs", table(TITLES, rows), [read_job(folder) for folder in options.work.glob("*/draw.out")])
+        shown = [[cell for title, cell in zip(TITLES, row) if title in ON_THE_PAGE] for row in rows]
+        put_table(PAGE, "runs", table(ON_THE_PAGE, shown),
+                  [read_job(folder) for folder in options.work.glob("*/draw.out")])
 
 
 if __name__ == "__main__":

@@ -231,14 +231,13 @@ One element, free lateral faces, Swift's law, at 0, 45 and 90 degrees to rolling
     Section("V5 Biaxial tension, plane strain and shear by Hill's criterion", """
 Stress over the flow stress at a material point, Hill (1948): 1/√(F + G) in equal biaxial tension; in plane strain along
 rolling at a strain of 0.3 an integration of the rates with the elastic strains, which s22 = s11 H/(F + H) neglects
-(0.930716, 0.08 % more: elastic strains increase with the flow stress); 1/√(2N) in shear. Deck
-`tests/verification/points.dat`; forces of an element on the whole path in the cases `equibiaxial` and `plane_strain`.
+(0.930716, 0.08 % more); 1/√(2N) in shear. Deck `tests/verification/points.dat`; forces of an element on the whole path
+in the cases `equibiaxial` and `plane_strain`.
 """, ratios),
     Section("V6 Hypoelastic simple shear", """
-Simple shear to 4 of an elastic material in 160 steps. Dienes (1979) for the Jaumann rate: s12 = G sin γ,
-s11 = G (1 - cos γ). The integration by the polar decomposition of each step is of second order: at γ = 4 the error of
-s11 falls from 0.0155 with 20 steps to 0.0039 with 40, 0.00097 with 80 and 0.00024 with 160. Case
-`tests/cases/point_shear_elastic`.
+Simple shear to 4 of an elastic material in 160 steps. Dienes (1979) for the Jaumann rate: s12 = G sin γ, s11 = G (1 -
+cos γ). The integration by the polar decomposition of each step is of second order: at γ = 4 the error of s11 falls from
+0.0155 with 20 steps to 0.00024 with 160. Case `tests/cases/point_shear_elastic`.
 """, elastic_shear),
     Section("V7 Simple shear with Prager's back-stress", """
 Almost rigid material without isotropic hardening, back-stress dX = 2/3 c D dt, to a shear of 6. Nagtegaal and de Jong
@@ -268,8 +267,8 @@ times the normal force, over the arc. Energy of the layer: F_0 h [(1 - x)(x - 3)
 """, dragged_edge_with_layer),
     Section("V20 Strip over a cylinder", """
 A thin elastic strip slides over a quarter of a fixed cylinder, µ = 0.144, in the compliant formulation and the mixed
-one. Euler, Eytelwein: T1/T2 = exp(µ π/2), whatever the height of the layer. Case `tests/cases/capstan`; other
-thicknesses and penalties in [capstan.md](reports/capstan.md).
+one. Euler, Eytelwein: T1/T2 = exp(µ π/2), whatever the height of the layer. Case `tests/cases/capstan`; with
+thicknesses of 0.02 and 0.05 mm, and penalties of 100 and 1e4 N/mm, the ratio is within 0.02 % (test `capstan`).
 """, strip_on_cylinder),
     Section("V22 Tools that turn", """
 A strip under a weight of 0.2 N slips on a quarter of a cylinder that turns, as in V20: the tension at the fixed end is
@@ -278,13 +277,11 @@ radius 20 mm is pressed on an elastic strip and moved by 10 mm: dragged, turned 
 over the radius). Coulomb: torque µ N R, friction work µ N times the slip, none where it rolls. Two such cylinders draw
 an elastic strip in by 30 degrees against a tension F: without slip their torques sum up to F R, and the strip moves by
 R times the angle, less 0.35 %, by which the pressed strip is longer under the rolls, and less the creep in the contact
-layer, which grows with F. The strip on the cylinder has 118 elements; with 59 the tension is off by 0.3 % and the
-torque by 1.0 %. The friction work of a cylinder is that of increments of 0.05 mm; with those of 0.2 mm, a fifth of the
-contact, it is 1.9 % too small. Cases `tests/cases/driven_cylinder`, `rolling_cylinder`, `driven_rolls`.
+layer, which grows with F. Cases `tests/cases/driven_cylinder`, `rolling_cylinder`, `driven_rolls`.
 """, turning_tools),
     Section("V23 Force of the blank-holder", """
 The [bending test](reports/bending_test.md) on its mesh (b), the first 5 mm of the draw. No support holds the sheet
 along z: the die carries the 22600 N that press the blank-holder, and the force of the punch, within the criterion of
-1e-2. The work of the tools is that in the sheet and of friction. Case `tests/cases/bending_5mm`.
+1e-2. Case `tests/cases/bending_5mm`.
 """, blank_holder),
 ]

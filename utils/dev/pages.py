@@ -87,13 +87,11 @@ PAGES = {
         "-m bending_study report docs/reports/bending_study.md --work {work}")),
     "bending_test": Page(6, BENDING, (
         "utils/dev/bending_tables.py --program {program} --work {work} --reuse --write docs/reports/bending_test.md",)),
-    "capstan": Page(1, f"{MECHANICS} tests/cases/capstan", (f"tests/capstan/run.py{RUN}",)),
     "constants": Page(40, f"{MECHANICS} src/run/adaptivity.f90 input_files/draw_bending input_files/square_cup "
                           "tests/parallel/bent.dat tests/benchmark/constants.py",
                       ("tests/benchmark/constants.py --work {work}",)),
     "contact": Page(8, MECHANICS, (labelled("compliant", contact=COMPLIANT) + " --write",
                                    envelope("--layers --write"))),
-    "default_settings": Page(4, BENDING, (f"tests/benchmark/default_settings.py{RUN}",)),
     "draw_bending": forming("draw_bending", 25),
     "gallery": Page(10, f"{MECHANICS} src/run/adaptivity.f90 src/sheet input_files utils/dd3/plot", (
         "utils/dev/gallery.py --program {program} --work {work} --write",)),

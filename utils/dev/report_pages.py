@@ -7,8 +7,8 @@
 
 Runs each input file of input_files that has a blank (finished runs are kept), makes its report, and loads it in windows
 of 1280 and 520 pixels: every picture must be shown, nothing be wider than the window, and no number be nan or inf.
-Writes <input file>.png beside the runs; --write puts smaller copies into docs/images/reports, and the table of the runs
-into docs/reports/pages.md.
+Writes <input file>.png beside the runs; --write puts smaller copies of those on docs/reports/pages.md into
+docs/images/reports, and the table of the runs into the page.
 """
 
 import argparse
@@ -30,7 +30,7 @@ ROOT = Path(__file__).resolve().parents[2]
 DECKS = ROOT / "input_files"
 PICTURES = ROOT / "docs" / "images" / "reports"
 PAGE = ROOT / "docs" / "reports" / "pages.md"
-HEAD = ["input file", "elements", "tools", "phases", "increments", "iterations", "warnings"]
+SHOWN = ("solid_shell", "draw_bead", "hat", "round_cup", "rail", "square_cup")  # on the page
 MADE_TOOLS = ("tutorial", "hood", "panel")  # folders of input files
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 WIDTHS = (1280, 520)
@@ -110,22 +110,17 @@ def report(options, name, folder):
     return [f"{name}: {text}" for text in wrong]
 
 
-def row_of(name, job):
-    """Return the row of a run in the table of the page."""
-    counts = job["counts"]
-    return [f"[{name}](#{name})", str(job["sheet"]["elements"]), str(len(job["tools"])), str(len(job["phases"])),
-            str(counts["increments"]), str(counts["iterations"]), ", ".join(w["code"] for w in job["warnings"])]
-
-
-def write(options, folders):
-    """Put small pictures and the table of the runs into the documents."""
+def write(options, names):
+    """Put small pictures, and the table of the runs of the page, into the documents."""
     PICTURES.mkdir(parents=True, exist_ok=True)
-    for name in folders:
+    for name in names:
         with Image.open(options.work / f"{name}.png") as image:
             image.thumbnail(SMALL)
             image.convert("P", palette=Image.Palette.ADAPTIVE).save(PICTURES / f"{name}.png", optimize=True)
-    jobs = {name: read_job(folder) for name, folder in folders.items()}
-    put_table(PAGE, "reports", table(HEAD, [row_of(name, job) for name, job in jobs.items()]), jobs.values())
+    jobs = {name: read_job(options.work / f"{name}.out") for name in SHOWN if (options.work / f"{name}.out").exists()}
+    rows = [[name, str(job["counts"]["increments"]), " ".join(sorted({w["code"] for w in job["warnings"]}))]
+            for name, job in jobs.items()]
+    put_table(PAGE, "reports", table(["input file", "increments", "warnings"], rows), jobs.values())
 
 
 def main():
@@ -135,21 +130,21 @@ def main():
                         "files with a blank but the tutorial's)")
     parser.add_argument("--program", default="dd3imp", help="the program dd3imp (default: the one on the path)")
     parser.add_argument("--work", type=Path, required=True, help="folder of the runs")
-    parser.add_argument("--write", action="store_true", help="put pictures and table into docs")
+    parser.add_argument("--write", action="store_true", help="put the pictures into docs")
     options = parser.parse_args()
     there = decks()
     for name in options.deck:
         if name not in there and not Path(name, "run.json").exists():
             raise Problem(f"no input file or folder of results {name}; there are: {', '.join(there)}")
     options.work.mkdir(parents=True, exist_ok=True)
-    folders, wrong = {}, []
+    names, wrong = [], []
     for name in each(options.deck or there, "reports"):
         folder = made(options, name, there[name]) if name in there else Path(name)
         name = Path(read_job(folder)["command"]["file"]).stem
-        folders[name] = folder
+        names.append(name)
         wrong += report(options, name, folder)
     if options.write:
-        write(options, folders)
+        write(options, [name for name in names if name in SHOWN])
     if wrong:
         raise Problem("\n".join(wrong))
 

@@ -46,7 +46,7 @@ contains
         "anisotropic sheet metals, NUMISHEET 2008, 43-48"
     allocate (description%rows, source=[ &
       (row(names(i, 1), kind_real, "", "", "r = 1, factor in "//trim(role(i))// &
-           "; 1/2 in the isotropic case"), i=1, 8), &
+           "; isotropic: 1/2"), i=1, 8), &
       (row(names(i, 2), kind_real, "", "-", "r = 2, factor in "//trim(role(i))// &
            "; left out with s = 1"), i=1, 8), &
       row("f", kind_real, "", "1", "M and N: factor of T23 (extension)"), &

@@ -47,13 +47,13 @@ contains
     description%title = "orthotropic, by generalised invariants J2 and J3; sb = T11 along rolling"
     description%source = "O. Cazacu, F. Barlat, Math. Mech. Solids 6 (2001) 613-630"
     allocate (description%rows, source=[ &
-      row("a1", kind_real, "", "", "J2: factor of (T11-T22)^2/6; 1 in the isotropic case"), &
+      row("a1", kind_real, "", "", "J2: factor of (T11-T22)^2/6; isotropic: 1"), &
       row("a2", kind_real, "", "", "J2: factor of (T22-T33)^2/6"), &
       row("a3", kind_real, "", "", "J2: factor of (T11-T33)^2/6"), &
       row("a4", kind_real, "", "1", "J2: factor of T12^2"), &
       row("a5", kind_real, "", "1", "J2: factor of T31^2"), &
       row("a6", kind_real, "", "1", "J2: factor of T23^2"), &
-      row("b1", kind_real, "", "", "J3: normal components; 1 in the isotropic case"), &
+      row("b1", kind_real, "", "", "J3: normal components; isotropic: 1"), &
       row("b2", kind_real, "", "", "J3: normal components"), &
       row("b3", kind_real, "", "", "J3: normal components"), &
       row("b4", kind_real, "", "", "J3: normal components"), &

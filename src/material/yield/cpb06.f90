@@ -45,8 +45,8 @@ contains
     description%title = "orthotropic, of exponent m, tension and compression differ"
     description%source = "O. Cazacu, B. Plunkett, F. Barlat, Int. J. Plasticity 22 (2006) 1171-1194"
     allocate (description%rows, source=[ &
-      row("C11", kind_real, "", "", "factor of s11 in S11; 1 in the isotropic case"), &
-      row("C12", kind_real, "", "", "factor of s22 in S11; 0 in the isotropic case"), &
+      row("C11", kind_real, "", "", "factor of s11 in S11; isotropic: 1"), &
+      row("C12", kind_real, "", "", "factor of s22 in S11; isotropic: 0"), &
       row("C13", kind_real, "", "", "factor of s33 in S11"), &
       row("C22", kind_real, "", "", "factor of s22 in S22"), &
       row("C23", kind_real, "", "", "factor of s33 in S22"), &

@@ -44,10 +44,10 @@ contains
     allocate (description%rows, source=[ &
       row("k", kind_real, "", "", "half the exponent", 1.0_wp, 50.0_wp), &
       row("c", kind_real, "", "", "part of the second function", 0.0_wp, 1.0_wp), &
-      row("scale", kind_real, "", "", "the paper's C; 2/3 in the isotropic case", 0.0_wp, &
+      row("scale", kind_real, "", "", "the paper's C; isotropic: 2/3", 0.0_wp, &
           lower_open=.true.), &
-      row("alpha1", kind_real, "", "", "factor of T22 in S22; 1 in the isotropic case"), &
-      row("alpha2", kind_real, "", "", "factor of T33 in S33; 1 in the isotropic case"), &
+      row("alpha1", kind_real, "", "", "factor of T22 in S22; isotropic: 1"), &
+      row("alpha2", kind_real, "", "", "factor of T33 in S33; isotropic: 1"), &
       row("gamma1", kind_real, "", "1.5", "factor of T23"), &
       row("gamma2", kind_real, "", "1.5", "factor of T31"), &
       row("gamma3", kind_real, "", "1.5", "factor of T12: twice the number of the paper's tables")])

@@ -42,8 +42,8 @@ contains
     description%source = "F. Barlat, J. C. Brem, J. W. Yoon and others, Int. J. Plasticity 19 "// &
         "(2003) 1297-1319"
     allocate (description%rows, source=[ &
-      (row(name(i), kind_real, "", "", "first transformation; 1 in the isotropic case"), i=1, 2), &
-      (row(name(i), kind_real, "", "", "second transformation; 1 in the isotropic case"), i=3, 6), &
+      (row(name(i), kind_real, "", "", "first transformation; isotropic: 1"), i=1, 2), &
+      (row(name(i), kind_real, "", "", "second transformation; isotropic: 1"), i=3, 6), &
       row(name(7), kind_real, "", "1", "first transformation: factor of T12"), &
       row(name(8), kind_real, "", "1", "second transformation: factor of T12"), &
       row("f", kind_real, "", "1", "both transformations: factor of T23 (extension)"), &

@@ -48,7 +48,7 @@ contains
     name = [character(len=24) :: "c"//indices, "d"//indices]
     allocate (description%rows, source=[ &
       (row(name(i), kind_real, "", "", "first transformation: minus the entry "//name(i)(2:2)// &
-           ","//name(i)(3:3)//"; 1 in the isotropic case"), i=1, 6), &
+           ","//name(i)(3:3)//"; isotropic: 1"), i=1, 6), &
       (row(name(i), kind_real, "", "1", "first transformation: factor of "//shear_of(name(i))), &
        i=7, 9), &
       (row(name(i), kind_real, "", "", "second transformation: minus the entry "// &

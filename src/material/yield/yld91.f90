@@ -33,7 +33,7 @@ contains
     description%title = "orthotropic, of exponent m, one linear transformation"
     description%source = "F. Barlat, D. J. Lege, J. C. Brem, Int. J. Plasticity 7 (1991) 693-712"
     allocate (description%rows, source=[ &
-      row("a", kind_real, "", "", "coefficient of T22-T33; 1 in the isotropic case"), &
+      row("a", kind_real, "", "", "coefficient of T22-T33; isotropic: 1"), &
       row("b", kind_real, "", "", "coefficient of T33-T11"), &
       row("c", kind_real, "", "", "coefficient of T11-T22"), &
       row("f", kind_real, "", "1", "coefficient of T23"), &

@@ -36,6 +36,26 @@ POINT = """*MATERIAL steel
   control = e11 s22 s33 s12 s23 s13
   target = 0.3 0 0 0 0 0 steps=3000000
 """
+# A block whose factors need much more memory than its matrix.
+BLOCK = """*BLANK block
+  size = 18 18 18
+  divisions = 18 18 18
+  material = steel
+*MATERIAL steel
+  young = 2.1e5
+  poisson = 0.3
+  yield = von_mises
+  hardening = perfect Y0=1e4
+*BOUNDARY bottom
+  set = z_min
+  fix = x y z
+*PHASE pull
+  control = load
+  trial = 1
+  displace = z_max z 0.001
+*SOLVER
+  method = umfpack
+"""
 
 
 def check(condition, text):
@@ -240,6 +260,43 @@ def little_memory(program, directory):
     check(done.returncode == 0, f"--check: exit code {done.returncode}")
 
 
+def little_memory_for_the_solver(program, directory):
+    """Test a limited address space in which the factors of UMFPACK find no place: E232, for one of the limits."""
+    directory.mkdir(parents=True)
+    deck = directory / "block.dat"
+    deck.write_text(BLOCK, encoding="utf-8")
+    environment, said = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}, ""
+    for megabytes in range(140, 300, 20):
+        limit = megabytes << 20
+        done = subprocess.run([program, "--threads", "1", "--output", directory / "out", deck], capture_output=True,
+                              text=True, timeout=100, check=False, env=environment,
+                              preexec_fn=lambda limit=limit: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+        check("Backtrace" not in done.stderr, f"{megabytes} MB: it says {done.stderr}")
+        said += done.stderr
+        if "stopped E232" in done.stderr:
+            break
+    check("stopped E232" in said and "not enough memory for the direct solver" in said, f"no limit gave E232:\n{said}")
+
+
+def full_disk_of_the_solver(program, directory):
+    """Test factors that MUMPS cannot write: E235."""
+    listed = subprocess.check_output([program, "--help", "method"], text=True, timeout=60)
+    if re.search(r"^  mumps .*; not in this build", listed, re.MULTILINE):
+        print("MUMPS is not in this build: full_disk_of_the_solver is skipped")
+        return
+    directory.mkdir(parents=True)
+    deck = directory / "block.dat"
+    deck.write_text(BLOCK.replace("method = umfpack", "method = mumps\n  factors = disk"), encoding="utf-8")
+
+    def limit():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 20, 1 << 20))
+
+    done = subprocess.run([program, "--threads", "1", "--output", directory / "out", deck], capture_output=True,
+                          text=True, timeout=100, check=False, preexec_fn=limit)
+    check(done.returncode == 3 and "stopped E235" in done.stderr, f"exit code {done.returncode}:\n{done.stderr}")
+
+
 def machine_without_memory(program, directory):
     """Test the warning of a job that needs more memory than /proc/meminfo says is left, in place of which a file is
     mounted."""
@@ -294,7 +351,8 @@ def long_inputs(program, directory):
 
 
 TESTS = (signals, kept_signals, closed_output, killed, vanished_folder, shared_folder, inputs_in_the_way,
-         little_memory, machine_without_memory, missing_solver, long_inputs)
+         little_memory, little_memory_for_the_solver, full_disk_of_the_solver, machine_without_memory, missing_solver,
+         long_inputs)
 
 
 def main():
