@@ -122,11 +122,10 @@ def relieved_cover(kind):
     body = part_set.pocket((40, 30), 15, 1, 0, 3)
     cuts = [(3, occ.addBox(x, y, -1, size, size, 20)) for x in (cut[0], -cut[0] - size)
             for y in (cut[1], -cut[1] - size)]
-    for x in (-1, 1):
-        for y in (-1, 1):
-            cuts.append((3, {"round": lambda: occ.addCylinder(37 * x, 27 * y, -1, 0, 0, 5, 3.2),
-                             "square": lambda: occ.addBox(37 * x - 4, 27 * y - 4, -1, 8, 8, 5),
-                             "slot": lambda: occ.addBox(34.25 * x - 0.75, 26.5 * y - 4.5, -1, 1.5, 9, 6)}[kind]()))
+    relief = {"round": lambda x, y: occ.addCylinder(37 * x, 27 * y, -1, 0, 0, 5, 3.2),
+              "square": lambda x, y: occ.addBox(37 * x - 4, 27 * y - 4, -1, 8, 8, 5),
+              "slot": lambda x, y: occ.addBox(34.25 * x - 0.75, 26.5 * y - 4.5, -1, 1.5, 9, 6)}[kind]
+    cuts += [(3, relief(x, y)) for x in (-1, 1) for y in (-1, 1)]
     occ.cut(body, cuts)
 
 
