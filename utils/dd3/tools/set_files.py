@@ -195,7 +195,7 @@ def write_set(tools: tool_set.ToolSet, options: ToolSettings, found: beads.Beads
     options.target.mkdir(parents=True, exist_ok=True)
     for name, surface in tools.surfaces.items():
         write(options.target / f"{name}.bez", surface, [f"{name} of {options.source.name}: {command}"])
-    set_deck.write_blank(options.target, tools.blank, options.source.name)
+    set_deck.write_blank(options, tools)
     text = set_deck.deck(options, tools, found, command)
     (options.target / DRAW).write_text(text, encoding="utf-8")
     if options.curves:
