@@ -17,6 +17,7 @@ from dd3.part.bends import find_bends
 from dd3.part.closed import closed_part, why
 from dd3.part.openings import Opening
 from dd3.part.reading import Request, read_part
+from dd3.part.table import summary
 from dd3.tools.cad_file import silence
 from dd3.tools.cad_mesh import Model, overlapping
 from dd3.tools.patch_distance import Distance
@@ -112,6 +113,37 @@ def test_open_corners(tmp_path, radius):
     below = corner[corner[:, 2] < -7]
     gap = np.linalg.norm(Distance(die, 4.0).nearest(below)[0] - below, axis=1)
     assert np.abs(gap - 1.1).max() < 0.01, (gap.min(), gap.max())
+
+
+def relieved_cover(kind):
+    """Make a folded cover with reliefs in floor, bends and walls at its open corners: round ones, with a small gap
+    between the walls, square ones, or a slot at the end of two walls each."""
+    cut, size = ((38.5, 28.5), 2) if kind == "round" else ((35, 25), 6)
+    body = part_set.pocket((40, 30), 15, 1, 0, 3)
+    cuts = [(3, occ.addBox(x, y, -1, size, size, 20)) for x in (cut[0], -cut[0] - size)
+            for y in (cut[1], -cut[1] - size)]
+    relief = {"round": lambda x, y: occ.addCylinder(37 * x, 27 * y, -1, 0, 0, 5, 3.2),
+              "square": lambda x, y: occ.addBox(37 * x - 4, 27 * y - 4, -1, 8, 8, 5),
+              "slot": lambda x, y: occ.addBox(34.25 * x - 0.75, 26.5 * y - 4.5, -1, 1.5, 9, 6)}[kind]
+    cuts += [(3, relief(x, y)) for x in (-1, 1) for y in (-1, 1)]
+    occ.cut(body, cuts)
+
+
+@pytest.mark.parametrize(("kind", "radius"), [("round", "2 and 3"), ("square", "4 and 5"), ("slot", "4 and 5")])
+def test_reliefs(tmp_path, kind, radius):
+    """Check that open corners with reliefs are listed, and closed in the tools."""
+    path = tmp_path / "cover.step"
+    made(path, lambda: relieved_cover(kind))
+    with session() as model:
+        reading = read_part(model, Request(path, toward=(0, 0, 1)))
+        row, = [line for line in summary(reading) if line.split()[0] == "open"]
+        assert "4 corners between walls, at x y z = " in row and row.count(";") == 3, row
+        closed = closed_part(model, reading, reading.direction.upper)
+        assert not reading.faults and not reading.warnings
+        assert f"closed: 4 open corners between walls, rounded by {radius} mm between these" in closed.notes
+        closed.load(model)
+        # Floor, walls, their bends, and two faces at each corner.
+        assert len(closed.taken) == 17
 
 
 def test_corners_left_open(folder, tmp_path, monkeypatch):

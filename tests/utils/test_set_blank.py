@@ -3,9 +3,15 @@
 from pathlib import Path
 
 import numpy as np
+import part_set
 import pytest
+from helpers import call
+from scipy.spatial.distance import pdist
+from test_tool_surfaces import read
 
-from dd3.tools.set_blank import area_of, blank_of, simplified, widened
+from dd3.mesh import read_inp
+from dd3.tools.patch_distance import Distance
+from dd3.tools.set_blank import Blank, area_of, blank_of, simplified, widened
 from dd3.tools.surface import Surface, from_nodes
 
 
@@ -30,6 +36,29 @@ def test_simplified():
     kept = simplified(10 * np.stack([np.cos(angle), np.sin(angle)], axis=1), 0.05)
     middle = 0.5 * (kept + np.roll(kept, -1, axis=0))
     assert np.linalg.norm(middle, axis=1).min() > 10 - 0.06 and len(kept) < 60
+
+
+def test_inclined(tmp_path, program):
+    """Check that a blank on an inclined binder is as large as the flat one and lies on the die, below the holder."""
+    flat = np.array([[0.0, 0], [80, 0], [80, 50], [0, 50]])
+    blank = Blank(flat, False, slope=np.array([0.1, -0.2]), height=3.0)
+    points = blank.placed(flat)
+    assert np.abs(pdist(points) - pdist(flat)).max() < 1e-9
+    assert np.abs((points - points[0]) @ blank.normal).max() < 1e-9
+    assert points.mean(axis=0)[:2] == pytest.approx(flat.mean(axis=0))
+    assert (Blank(flat, False).placed(flat)[:, :2] == flat).all()
+    part = part_set.write(tmp_path, ["leaning_tray"])["leaning_tray"]
+    said = call("tool", part, tmp_path / "tools", "--program", program)
+    deck = (tmp_path / "tools" / "draw.dat").read_text()
+    assert 'file = "blank.inp"' in deck
+    assert not any(text in deck for text in ("*PHASE gravity", "*PHASE close", "*BLANK"))
+    assert "time       about" in said and "error" not in said, said
+    nodes = np.array(list(read_inp(tmp_path / "tools" / "blank.inp", None).nodes.values()))
+    for tool, own in zip(("die", "holder"), np.split(nodes, 2)):
+        surface = Distance(read(tmp_path / "tools" / f"{tool}.bez"), 4.0)
+        away = np.linalg.norm(surface.nearest(own)[0] - own, axis=1)
+        beside = own[:, 1] < own[:, 1].min() + 10
+        assert away[beside].max() < 1e-6, (tool, away[beside].max())
 
 
 def test_bent_strip():

@@ -5,6 +5,7 @@
 import math
 import subprocess
 import sys
+from pathlib import Path
 from unittest import mock
 
 import gmsh
@@ -404,6 +405,19 @@ def test_messages(tmp_path):
                         ((tmp_path / "empty.step",), "the file is empty"),
                         ((tmp_path / "part.xyz",), "unknown kind of file")):
         assert said in convert(*words, expect=2)
+
+
+def test_slow_division(monkeypatch):
+    """Check that few meshes are made of a spline surface whose distance falls slowly with its division."""
+    made, once = [], cad_mesh.mesh_once
+    monkeypatch.setattr(cad_mesh, "mesh_once", lambda *given: made.append(1) or once(*given))
+    with session() as model, cad_file.silence():
+        x = np.linspace(-90, 90, 7)
+        points = [gmsh.model.occ.addPoint(a, b, 6 * (a / 60)**2 + 4 * (b / 60)**2) for b in x for a in x]
+        one = cad_mesh.Model(tags=[gmsh.model.occ.addBSplineSurface(points, 7)], names=["face"])
+        gmsh.model.occ.synchronize()
+        cad_mesh.mesh_within(model, Path("part"), one, 0.001, np.inf, lambda fraction: None)
+    assert one.distance.max() < 0.001 and len(made) < 5, (len(made), len(one.nodes))
 
 
 def test_known_distances():

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from dd3.curve import read_curves
-from dd3.triangles import Triangles, prepared, rims
+from dd3.triangles import Triangles, prepared, rims, turned_alike
 from dd3.unfold import Balance, Sheet, unfolded
 
 HERE = Path("part")
@@ -104,6 +104,18 @@ def test_tangent():
     there, back = (balance.assembled(balance.forces((places + sign * 1e-6 * step)[mesh.triangles])) for sign in (1, -1))
     expected = (there - back).ravel() / 2e-6
     assert np.allclose(balance.tangent(places[mesh.triangles]) @ step.ravel(), expected, atol=1e-5 * abs(expected).max())
+
+
+def test_turned_alike():
+    """Check that triangles turn as their neighbours, of two pieces too, and that nothing is said of a Möbius strip."""
+    mesh = grid(lambda u, v: (u, v, u * v), 9, 7)
+    both = np.vstack((mesh.triangles, mesh.triangles + len(mesh.nodes)))
+    over = np.random.default_rng(1).random(len(both)) < 0.5
+    found = turned_alike(np.where(over[:, None], both[:, ::-1], both))
+    for piece, of in zip(np.split(found, 2), np.split(both, 2)):
+        assert (piece == of).all() or (piece == of[:, ::-1]).all()
+    strip = np.array([[i, i + 1, i + 2] for i in range(8)] + [[8, 9, 1], [9, 1, 0]])
+    assert (np.sort(turned_alike(strip), axis=1) == np.sort(strip, axis=1)).all()
 
 
 def test_command(tmp_path):

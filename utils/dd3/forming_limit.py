@@ -40,13 +40,13 @@ from dd3.run import read_job
 from dd3.sheet import Sheet
 from dd3.surface_strain import cell_strains
 from dd3.tables import read_text
+from dd3.verdict import THINNING
 
 ZONES = ("no strain", "thickening", "safe", "marginal", "critical")
 COLOURS = ("#d0d4d8", "#56b4e9", "#009e73", "#f0e442", "#d55e00")  # safe for the colour-blind
 LEAST_STRAIN = 0.01  # major strain below which a point is not judged
 RIGHT_SLOPE = 0.6
 LARGEST_N = 0.21  # of the correlation
-THINNING = 0.25  # limit where none is given
 LARGEST = 2.0  # logarithmic strain; larger ones are in per cent
 LOW_CARBON = "low_carbon_steel"  # grade in *MATERIAL
 WITH_EXPONENT = ("swift", "swift_voce", "ludwik")  # hardening laws with an exponent n

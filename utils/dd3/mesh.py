@@ -293,7 +293,7 @@ def write_inp(path: Path, mesh: Mesh, source: Path) -> None:
     if len(counts) != 1:
         raise Problem(f"hexahedra with {' and '.join(map(str, sorted(counts)))} nodes; expected one kind")
     with path.open("w", encoding="utf-8") as file:
-        file.write(f"*HEADING\nmesh of {source.name}, by dd3 mesh\n*NODE\n")
+        file.write(f"*HEADING\nmesh of {source.name}, by dd3\n*NODE\n")
         file.writelines(f"{label}, {x!r}, {y!r}, {z!r}\n" for label, (x, y, z) in mesh.nodes.items())
         file.write(f"*ELEMENT, TYPE=C3D{counts.pop()}\n")
         for label, nodes in mesh.elements.items():

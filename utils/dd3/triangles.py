@@ -70,7 +70,6 @@ def of_facets(path: Path) -> Triangles:
 def prepared(path: Path, mesh: Triangles, mirror: Sequence[int], least: float = 0.0) -> Triangles:
     """Return a surface in one piece whose triangles turn the same way, seen from above, with its mirror images. Nodes
     that are nearer to each other than `least`, mm, become one."""
-    import pyvista as pv
     nodes, triangles = mesh.nodes, mesh.triangles
     near = max(NEAR * float(np.ptp(nodes, axis=0).max()), least)
     for axis in mirror:
@@ -86,10 +85,7 @@ def prepared(path: Path, mesh: Triangles, mirror: Sequence[int], least: float = 
     _, first = np.unique(same, return_index=True)
     nodes, triangles = nodes[first], same[triangles]
     triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
-    surface = pv.PolyData.from_regular_faces(nodes, triangles).compute_normals(
-        cell_normals=True, point_normals=False, consistent_normals=True, auto_orient_normals=False,
-        split_vertices=False)
-    triangles = np.asarray(surface.regular_faces)
+    triangles = turned_alike(triangles)
     pieces, _ = connected_components(pairs_matrix(np.vstack((triangles[:, :2], triangles[:, 1:])), len(nodes)),
                                      directed=False)
     if pieces > 1:
@@ -97,6 +93,23 @@ def prepared(path: Path, mesh: Triangles, mirror: Sequence[int], least: float = 
     if area_vectors(nodes, triangles).sum(axis=0)[2] < 0:
         triangles = triangles[:, ::-1]
     return Triangles(nodes, triangles)
+
+
+def turned_alike(triangles: np.ndarray) -> np.ndarray:
+    """Return triangles (m, 3) that turn the same way as their neighbours; where they cannot, some do not."""
+    start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    low, high = np.minimum(start, end), np.maximum(start, end)
+    order = np.lexsort((high, low))
+    first, second = order[:-1], order[1:]
+    joined = (low[first] == low[second]) & (high[first] == high[second])
+    first, second = first[joined], second[joined]
+    # Each triangle is there as it is, and turned over: neighbours run along their side in opposite directions.
+    count, alike = len(triangles), start[first] != start[second]
+    first, second = first // 3, second // 3
+    links = np.vstack([np.stack([first + side * count, second + np.where(alike, side, 1 - side) * count], axis=1)
+                       for side in (0, 1)])
+    _, group = connected_components(pairs_matrix(links, 2 * count), directed=False)
+    return np.where((group[:count] > group[count:])[:, None], triangles[:, ::-1], triangles)
 
 
 def pairs_matrix(pairs: np.ndarray, count: int) -> coo_array:

@@ -4,6 +4,7 @@
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
+THINNING = 0.25  # largest thinning where no limit is given
 GOOD, BAD, DOUBTFUL, OPEN = "good", "not good", "doubtful", "not judged"
 COLOURS = {GOOD: "#009e73", BAD: "#d55e00", DOUBTFUL: "#f0e442", OPEN: "#9aa0a6"}
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Open corners of a folded part: the blank is cut there before its walls are bent up from the floor.
+"""Open corners of a folded part: the blank is cut there, with or without a relief in the floor and the bends, before
+its walls are bent up from the floor.
 
 In the tools walls and bends go on round the corner. The bends and the faces through the thickness at the corner are
 taken out of the solid, so that floor and walls meet in sharp edges, and these are rounded in one step: that between two
@@ -44,7 +45,7 @@ class Corner:
 @dataclass
 class Wall:
     """A flat face to which a rim leads over bends: the faces of these, the edges on all of them up to the first corner
-    of the rim, and points of the wall's end (n, 3)."""
+    of the rim that turns outwards, and points of the wall's end (n, 3)."""
 
     face: int
     bends: set[int]
@@ -131,7 +132,8 @@ def wall_beside(shape: Shape, rim: Rim, stretches: list[np.ndarray], k: int, ste
             bends.add(face)
             edges |= set(rim.edge[own].tolist())
             continue
-        corner = np.flatnonzero(np.abs(rim.turn[far]) > MOUTH)
+        # A relief beside the bend turns it inwards first.
+        corner = np.flatnonzero(np.cumsum(rim.turn[far]) > MOUTH)
         count = corner[0] + 1 if len(corner) else len(own)
         near = (own[:1] + max(-step, 0)) % len(rim.turn)
         nodes = rim.nodes[np.concatenate([near, far[:count]])]

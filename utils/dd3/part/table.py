@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from dd3.part.corners import find_corners
 from dd3.part.directions import Direction
 from dd3.part.features import draft_range, least_radius
 from dd3.part.reading import Reading
@@ -40,6 +41,9 @@ def summary(reading: Reading) -> list[str]:
         rows += [("holes", counted(reading.holes, [f"{count} {words} mm" for words, count in kinds.items()])),
                  ("notches", counted(reading.notches, [f"{notch.width:.3g} mm wide, {notch.depth:.3g} mm deep"
                                                        for notch in reading.notches]))]
+        corners = find_corners(shape, reading.direction.upper)
+        rows += [("open", f"{len(corners)} corners between walls, at x y z = "
+                  + some([one.said for one in corners], "; "))] if corners else []
     if reading.direction:
         rows.append(("radii", f"least inside {radius_words(reading.inner_radius)}, outside "
                      f"{radius_words(reading.outer_radius)}" if sheet.kind == "sheet" else
@@ -114,9 +118,9 @@ def named(tags: list[int]) -> str:
     return f"{'face' if len(tags) == 1 else 'faces'} {spans(tags)}"
 
 
-def some(words: list[str]) -> str:
+def some(words: list[str], between: str = ", ") -> str:
     """Return the first of some words."""
-    return ", ".join(words[:MOST]) + (f" and {len(words) - MOST} more" if len(words) > MOST else "")
+    return between.join(words[:MOST]) + (f" and {len(words) - MOST} more" if len(words) > MOST else "")
 
 
 def counted(items: Sequence[object], words: list[str]) -> str:

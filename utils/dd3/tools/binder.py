@@ -83,6 +83,11 @@ class Binder:
         vector = np.concatenate([-gradient, np.ones((*gradient.shape[:-1], 1))], axis=-1)
         return np.asarray(vector / np.linalg.norm(vector, axis=-1, keepdims=True))
 
+    @property
+    def plane(self) -> bool:
+        """Tell whether it is a plane."""
+        return self.profile.k == 1
+
     def raised(self, height: float) -> "Binder":
         """Return the binder at another height."""
         return replace(self, height=self.height + height)

@@ -9,6 +9,9 @@ from dd3.tools.parameters import length_of
 
 # Turn of the normal or of the tangent over an edge's division before it is halved, degrees.
 TURN = 45.0
+# Further factor on the divisions of a face that is divided for at least the third time, as its distance falls slowly:
+# surfaces whose curvature is not smooth.
+SLOW = 1.3
 # Corner angles of a face with a regular mesh, degrees.
 CORNERS = 25.0, 155.0
 # Fraction of its last value that the distance of a divided face must fall below; divisions without that before it is
@@ -38,6 +41,7 @@ class Division:
         self.longest = longest  # patches along edges of one face only, mm
         self.factor = {tag: np.ones(2) for tag in tags}
         self.last: dict[Any, float] = {}  # the distance of a face when it was divided further
+        self.divided: defaultdict[Any, int] = defaultdict(int)
         self.stagnant: defaultdict[Any, int] = defaultdict(int)
         self.distance = np.zeros((len(tags), 2))  # the distances of the faces along their first and second edges, mm
         # Patches of the faces as they were measured last, and their distances.
@@ -189,7 +193,9 @@ class Division:
             # A distance that does not fall is a gap of the CAD between edge and face.
             if largest > 1.0 and self.stagnant[tag] < MOST_STAGNANT:
                 self.last[tag] = largest
-                wanted = raised(1.1 * distance[index]**0.3, distance[index], 1.25, 2.5)
+                self.divided[tag] += 1
+                margin = 1.1 if self.divided[tag] < 3 else 1.1 * SLOW
+                wanted = raised(margin * distance[index]**0.3, distance[index], 1.25, 2.5)
             elif kink[index].max() > 1.0:
                 wanted = raised(1.1 * kink[index]**0.5, kink[index], 1.2, 2.0)
             if index in folded:

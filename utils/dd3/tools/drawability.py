@@ -18,11 +18,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dd3.forming_limit import THINNING
 from dd3.tools import set_material
 from dd3.tools.report import where
 from dd3.tools.surface import Surface, areas_at, grid, points_at
 from dd3.triangles import Triangles, area_vectors
+from dd3.verdict import THINNING
 
 if TYPE_CHECKING:
     from dd3.tools.tool_set import ToolSet

@@ -49,6 +49,27 @@ def supervised(body: Callable[..., Any], message: str) -> None:
     sys.exit(os.WEXITSTATUS(status) if os.WIFEXITED(status) else 128 + os.WTERMSIG(status))
 
 
+@contextmanager
+def beside(body: Callable[[], Any]) -> Iterator[None]:
+    """Call a function that writes a file in a child process, beside the block; after the block if that fails."""
+    child = os.fork() if hasattr(os, "fork") else None
+    if child == 0:
+        code = 1
+        try:
+            body()
+            code = 0
+        finally:
+            os._exit(code)
+    failed = True
+    try:
+        yield
+    finally:
+        if child:
+            failed = wait_for(child) != 0
+    if failed:
+        body()
+
+
 def wait_for(child: int) -> int:
     """Return the status of a child, which gets the interrupts too."""
     while True:

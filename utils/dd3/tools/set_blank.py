@@ -38,7 +38,8 @@ FULL = 0.9
 class Blank:
     """Blank in plan: closed outline (n, 2), mm, anticlockwise, and whether it is cut along it or is its box; the border
     of what is covered at the end of the draw, anticlockwise, and its points in the flat blank (m, 2), the largest
-    thinning by the estimate, a fraction, and its place (3); none where these are not estimated."""
+    thinning by the estimate, a fraction, and its place (3); none where these are not estimated; slope (2,) of the plane
+    on which it lies at the start, and its height at x = y = 0, mm."""
 
     outline: np.ndarray
     cut: bool
@@ -46,6 +47,8 @@ class Blank:
     flat: np.ndarray = field(default_factory=lambda: np.zeros((0, 2)))
     thinning: float | None = None
     thinnest: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    slope: np.ndarray = field(default_factory=lambda: np.zeros(2))
+    height: float = 0.0
 
     @property
     def box(self) -> np.ndarray:
@@ -62,6 +65,24 @@ class Blank:
         """Return the closed line around it (n, 2)."""
         (x0, y0), (x1, y1) = self.box
         return self.outline if self.cut else np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
+
+    @property
+    def inclined(self) -> bool:
+        """Tell whether it does not lie level at the start."""
+        return bool(np.any(self.slope))
+
+    @property
+    def normal(self) -> np.ndarray:
+        """Return the unit normal of the plane on which it lies, upwards."""
+        vector = np.array([*-self.slope, 1.0])
+        return np.asarray(vector / np.linalg.norm(vector))
+
+    def placed(self, points: np.ndarray) -> np.ndarray:
+        """Return points of the flat blank (n, 2) in space (n, 3): turned into its plane about its middle."""
+        middle, steep = self.box.mean(axis=0), np.linalg.norm(self.slope)
+        across = self.slope / steep if steep else self.slope
+        plan = points - np.outer((points - middle) @ across * (1.0 - self.normal[2]), across)
+        return np.column_stack([plan, plan @ self.slope + self.height])
 
     def within(self, box: np.ndarray) -> "Blank":
         """Return the part of the blank in a box (2, 2)."""

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Input file that draws a part with the tools that were made of it, and releases it."""
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 
 from dd3.curve import write_curves
+from dd3.mesh import Mesh, write_inp
 from dd3.tools import set_material
 from dd3.tools.beads import Beads
 from dd3.tools.pad_force import Pin, axes_of
@@ -35,20 +35,14 @@ DECK = """# Draws {part} and releases it; tools by {command}
 
 *PARAMETER
   tools = .             # folder of the tools
-  thickness = {thickness}
-  divisions = {divisions}     # elements of {length:.2g} mm
-  levels = {levels}            # which are divided where the tools are curved, down to {smallest:.2g} mm
+{sizes}  levels = {levels}            # which are divided where the tools are curved, down to {smallest:.2g} mm
   points = 5            # through the thickness
   depth = {travel}
 {forces}  friction = {friction:g}
 
 {material}
 
-*BLANK sheet
-  origin = {origin} 0
-  size = {size} ${{thickness}}
-  divisions = ${{divisions}}
-  adaptive = ${{levels}}
+{sheet}  adaptive = ${{levels}}
   element = solid_shell
   thickness_points = ${{points}}
   material = {name}
@@ -66,6 +60,19 @@ DECK = """# Draws {part} and releases it; tools by {command}
 {light}
 *OUTPUT
   fields = every 5 mm
+"""
+SIZES = """  thickness = {thickness:g}
+  divisions = {divisions} 1     # elements of {length:.2g} mm
+"""
+LEVEL_SHEET = """*BLANK sheet
+  origin = {origin} 0
+  size = {size} ${{thickness}}
+  divisions = ${{divisions}}
+"""
+# A box in the plane of the binder, in elements of that length.
+INCLINED_SHEET = """# It lies on the inclined binder; elements of {length:.2g} mm.
+*MESH sheet
+  file = "{file}"
 """
 TOOL = """*TOOL {name}
   patches = "${{tools}}/{name}.bez"
@@ -110,11 +117,12 @@ GRAVITY = """# The blank is laid on the die by its weight.
   displace = middle y 0
 
 """
-BLANK = "blank.txt"  # outline of the blank
+BLANK, MESH = "blank.txt", "blank.inp"  # outline of the blank; its mesh, if it does not lie level
 CUT = """
 *TRIM blank
   file = "{file}"
 """
+NORMAL = "  along = 0 0 0         # normal to the sheet\n"
 CLOSING = """# The holder bends the blank onto the die.
 *PHASE close
   control = holder
@@ -137,14 +145,7 @@ CLAMP = """*PHASE clamp
 
 def deck(options: ToolSettings, tools: ToolSet, beads: Beads, command: str) -> str:
     """Return the input file: tools, draw-beads, the command that made these."""
-    low, high = tools.blank.box
-    smallest = max(min(OF_RADIUS * tools.radius, (8 * SAG * options.thickness * tools.radius)**0.5),
-                   OF_THICKNESS * options.thickness)
-    levels = int(np.clip(np.ceil(np.log2((tools.blank.area / ELEMENTS)**0.5 / smallest)), 0, LEVELS))
-    length = 2**levels * smallest
-    if tools.blank.cut:  # that does not meet the border of the mesh
-        low, high = low - AROUND * length, high + AROUND * length
-    divisions = [2 * int(np.ceil(side / length / 2)) for side in high - low]
+    (low, high), divisions, levels, length = divided(options, tools)
     pressed = {name: PRESSURE * tools.area[name] for name in ("holder", "pad") if name in tools.surfaces}
     pressed |= {"pad": tools.pad_force} if "pad" in pressed and tools.pad_force else {}
     forces = [f"  {name} = {force:.3g}     # N, {force / tools.area[name]:.2g} MPa\n"
@@ -155,25 +156,53 @@ def deck(options: ToolSettings, tools: ToolSet, beads: Beads, command: str) -> s
     support += "" if pressed else HELD
     closing = CLOSING.format(closing=tools.closing - SHORT * options.thickness) if tools.closing else ""
     weighs = tools.closing > 0 and set_material.density_of(options.material) is not None
-    return DECK.format(part=options.source.stem, command=command, thickness=f"{options.thickness:g}",
-                       divisions=f"{divisions[0]} {divisions[1]} 1", length=length,
-                       levels=levels, smallest=smallest, travel=f"{tools.travel:.6g}", forces="".join(forces),
-                       cut=CUT.format(file=BLANK) if tools.blank.cut else "",
+    inclined = tools.blank.inclined
+    sheet = (INCLINED_SHEET.format(file=MESH, length=length) if inclined
+             else LEVEL_SHEET.format(origin=pair(low), size=pair(high - low)))
+    return DECK.format(part=options.source.stem, command=command,
+                       sizes="" if inclined else SIZES.format(thickness=options.thickness, length=length,
+                                                              divisions=pair(np.array(divisions))),
+                       levels=levels, smallest=length / 2**levels, travel=f"{tools.travel:.6g}", forces="".join(forces),
+                       cut=CUT.format(file=BLANK) + (NORMAL if inclined else "") if tools.blank.cut else "",
                        material=set_material.text_of(options.material), name=set_material.name_of(options.material),
                        friction=FRICTION, beads=beads.blocks(), pins=pinned(tools.pins),
                        gravity=GRAVITY.format(earth=EARTH) if weighs else "",
-                       light="  gravity = 0 0 0\n" if weighs else "", origin=pair(low), size=pair(high - low),
+                       light="  gravity = 0 0 0\n" if weighs else "", sheet=sheet,
                        tools="".join(TOOL.format(name=name, contact=CONTACT[name]) for name in tools.surfaces),
                        support=support, closing=closing,
                        clamp=CLAMP.format(presses="".join(presses), free=FREE if tools.closing else "")
                        if pressed else "")
 
 
-def write_blank(folder: Path, blank: Blank, part: str) -> None:
-    """Write the outline of a blank that is cut along it."""
+def divided(options: ToolSettings, tools: ToolSet) -> tuple[np.ndarray, list[int], int, float]:
+    """Return the box of the mesh of the blank (2, 2), mm, its divisions along x and y, the levels to which these may be
+    divided, and the length of the undivided elements, mm."""
+    smallest = max(min(OF_RADIUS * tools.radius, (8 * SAG * options.thickness * tools.radius)**0.5),
+                   OF_THICKNESS * options.thickness)
+    levels = int(np.clip(np.ceil(np.log2((tools.blank.area / ELEMENTS)**0.5 / smallest)), 0, LEVELS))
+    length = 2**levels * smallest
+    box = tools.blank.box
+    if tools.blank.cut:  # that does not meet the border of the mesh
+        box = box + AROUND * length * np.array([[-1.0], [1.0]])
+    return box, [2 * int(np.ceil(side / length / 2)) for side in box[1] - box[0]], levels, length
+
+
+def write_blank(options: ToolSettings, tools: ToolSet) -> None:
+    """Write the outline of a blank that is cut along it, and the mesh of one that does not lie level."""
+    blank, of = tools.blank, options.source
     if blank.cut:
-        write_curves(folder / BLANK, [np.column_stack([blank.outline, np.zeros(len(blank.outline))])],
-                     f"outline of the blank of {part}")
+        write_curves(options.target / BLANK, [blank.placed(blank.outline)], f"outline of the blank of {of.name}")
+    if blank.inclined:
+        (low, high), (across, along), _, _ = divided(options, tools)
+        plan = np.array([[x, y] for y in np.linspace(low[1], high[1], along + 1)
+                         for x in np.linspace(low[0], high[0], across + 1)])
+        lower = blank.placed(plan)
+        nodes = np.concatenate([lower, lower + options.thickness * blank.normal])
+        first = np.array([j * (across + 1) + i + 1 for j in range(along) for i in range(across)])
+        face = first[:, None] + [0, 1, across + 2, across + 1]
+        cells = np.hstack([face, face + len(lower)])
+        write_inp(options.target / MESH, Mesh(dict(enumerate(map(tuple, nodes.tolist()), 1)),
+                                              dict(enumerate(cells.tolist(), 1))), of)
 
 
 def said(options: ToolSettings, blank: Blank) -> str:

@@ -4,7 +4,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from copy import copy
 from pathlib import Path
 from typing import Any
@@ -19,6 +19,7 @@ from dd3.part.command import write_reading
 from dd3.progress import Progress, doing
 from dd3.sheet import Sheet
 from dd3.tools import beads, drawability, pad_force, picture, report, set_deck, set_material, tool_set, trim_deck
+from dd3.tools.limits import beside
 from dd3.tools.one_tool import judge_distance
 from dd3.tools.settings import DRAW, ToolSettings
 from dd3.tools.surface import write
@@ -74,10 +75,17 @@ def make_set(options: ToolSettings, command: str) -> dict[str, report.Report]:
     reading = setup.read_for_tools(options)
     say(str(options.source), options.source, report.Report(table.short(reading), reading.warnings,
                                                            [fault.text for fault in reading.faults]))
-    if options.target:
+    if options.target and reading.faults:
         write_reading(reading, options.target)
     if reading.faults:
         sys.exit(2)
+    # The picture takes two seconds.
+    with beside(lambda: write_reading(reading, options.target)) if options.target else nullcontext():
+        return made_set(options, command)
+
+
+def made_set(options: ToolSettings, command: str) -> dict[str, report.Report]:
+    """Make and write the tools of a part that was read, and the input file; return the reports."""
     progress = Progress(options.source.name)
     with session() as gmsh, about(options.source):
         tools, options = tools_of(gmsh, options, progress)
@@ -187,7 +195,7 @@ def write_set(tools: tool_set.ToolSet, options: ToolSettings, found: beads.Beads
     options.target.mkdir(parents=True, exist_ok=True)
     for name, surface in tools.surfaces.items():
         write(options.target / f"{name}.bez", surface, [f"{name} of {options.source.name}: {command}"])
-    set_deck.write_blank(options.target, tools.blank, options.source.name)
+    set_deck.write_blank(options, tools)
     text = set_deck.deck(options, tools, found, command)
     (options.target / DRAW).write_text(text, encoding="utf-8")
     if options.curves:

@@ -183,8 +183,12 @@ def made(gmsh: Any, options: ToolSettings, progress: Any) -> ToolSet:
                              "that; compare the middle of the sheet after the draw, and give the blank that margin"))
     if not pad or any(reach.own for reach in face.reaches):
         holder = holder_of(gmsh, face, curves, options)
-        closing = float(over - report.extent(holder.net)[0][2])
-        result.closing = closing if closing > options.tolerance else 0.0
+        binder = face.binders[0]
+        if len(face.binders) == 1 and binder.plane and (slope := binder.gradient(np.zeros(2))).any():
+            result.blank.slope, result.blank.height = slope, float(binder.z(np.zeros(2))) - top
+        else:
+            closing = float(over - report.extent(holder.net)[0][2])
+            result.closing = closing if closing > options.tolerance else 0.0
         others["holder"] = holder, result.closing - top
     for name, (surface, height) in others.items():
         result.area[name] = result.blank.pressed(surface)
