@@ -71,8 +71,8 @@ UNKNOWN = "E115"  # code of the error of a parameter that an input file does not
 
 @dataclass
 class Shapes:
-    """The sheet under the tools: initial and present places of the nodes of its lower face, mm, and the displacements of
-    the tools by the names of their files."""
+    """The sheet under the tools: initial and present places of the nodes of its lower face, mm, and the displacements
+    of the tools by the names of their files."""
 
     initial: np.ndarray
     drawn: np.ndarray

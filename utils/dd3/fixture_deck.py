@@ -142,8 +142,8 @@ def acting_of(found: Comparison, number: int) -> Acting:
         path = away[0] - support.stop
         if support.one_sided and normal[0] @ support.direction > 0:
             other = partner(part, int(part.nodes[node]))
-            return Acting(part.sheet.initial(part.step)[other], found.motion.of(part.sheet.points(part.step)[[other]])[0],
-                          path, part.thickness)
+            place = found.motion.of(part.sheet.points(part.step)[[other]])[0]
+            return Acting(part.sheet.initial(part.step)[other], place, path, part.thickness)
     elif found.wanted:
         goal = of_material(found.wanted.initial, found.wanted.points, part.initial[node][None])[0]
         path = (goal - points[node])[axis] * support.direction[axis]

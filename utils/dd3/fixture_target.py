@@ -37,8 +37,8 @@ class Target:
     """The part in a fixture, against the nominal shape of a first run, which later runs do not change."""
 
     def __init__(self, fixture: Fixture, drawn: Sheet, beyond: float) -> None:
-        """drawn: the sheet whose step with tools is the nominal shape if the fixture names none; beyond: continuation of
-        it beyond its border, by which nodes there are corrected, mm."""
+        """drawn: the sheet whose step with tools is the nominal shape if the fixture names none; beyond: continuation
+        of it beyond its border, by which nodes there are corrected, mm."""
         self.fixture = fixture
         self.wanted: Face | None = None if fixture.surface else nominal_face(fixture, drawn)
         self.around = None if self.wanted is None else sheet_surface(self.wanted.sheet, self.wanted.step, beyond,
