@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 #: {"name": "forming_compensation_hat", "arguments": ["hat"], "labels": ["slow"], "timeout": 1200, "cost": 120}
+#: {"name": "forming_compensation_clamped", "arguments": ["clamped"], "labels": ["slow"], "timeout": 1200, "cost": 60}
 #: {"name": "forming_compensation_rail", "arguments": ["rail"], "labels": ["slow"], "timeout": 3600, "cost": 600}
 """Tools that are corrected for springback.
 
     compensation.py hat --program build/release/dd3imp --work build/compensation
+    compensation.py clamped --program build/release/dd3imp --work build/compensation
     compensation.py rail --program build/release/dd3imp --work build/compensation
 
-After at most four corrections the largest deviation of the sprung hat is a tenth of that without. After two the sprung,
+After at most four corrections the largest deviation of the sprung hat is a tenth of that without; after two that of the
+hat in its fixture is half of it, its root mean square 40 %. After two the sprung,
 trimmed rail of mild steel deviates by at most a quarter, also in the root mean square; STEP files of its tools are
 written.
 """
@@ -17,6 +20,7 @@ from pathlib import Path
 
 from dd3 import compensate
 from dd3.errors import check
+from dd3.fixture import read_fixture
 from dd3.process import read_process
 from dd3.programs import parser_of_runs
 
@@ -39,6 +43,16 @@ def compensate_hat(options):
     check(min(found)[0] < found[0][0] / 10, f"hat: {found}")
 
 
+def compensate_clamped(options):
+    """Correct the tools of the hat for its shape in the fixture."""
+    hat = copied(options.work, "hat")
+    process = read_process(hat / "hat.toml")
+    process.operations[0].settings["divisions"] = "60 1 1"
+    found = compensate.compensate(options.program, process, "tools", 2, 0.01, 1.0, ["x", "y"], None,
+                                  fixture=read_fixture(hat / "fixture.toml"))
+    check(found[-1][0] < found[0][0] / 2 and found[-1][1] < 0.4 * found[0][1], f"hat in its fixture: {found}")
+
+
 def compensate_rail(options):
     """Correct the tools of the rail, and write them as STEP files."""
     rail = copied(options.work, "rail")
@@ -54,9 +68,9 @@ def compensate_rail(options):
 def main():
     """Run one of them."""
     parser = parser_of_runs(__doc__)
-    parser.add_argument("part", choices=["hat", "rail"])
+    parser.add_argument("part", choices=["hat", "clamped", "rail"])
     options = parser.parse_args()
-    compensate_hat(options) if options.part == "hat" else compensate_rail(options)
+    {"hat": compensate_hat, "clamped": compensate_clamped, "rail": compensate_rail}[options.part](options)
     sys.stdout.flush()
 
 

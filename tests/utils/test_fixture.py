@@ -8,6 +8,9 @@ import pandas as pd
 import pytest
 from helpers import call
 
+from dd3.errors import Problem
+from dd3.fixture import read_fixture
+
 YOUNG, DENSITY, WIDTH = 2e5, 7.85e-9, 10.0
 INERTIA = WIDTH / 12
 STRIP = """*BLANK strip
@@ -87,7 +90,7 @@ def test_gravity_on_three_locators(program, tmp_path):
     text += support("locator", "b1", [0, 5, 0], [0, 1, 0], "pin = true")
     text += support("locator", "b2", [200, 5, 0], [0, 1, 0], "pin = true")
     text += support("locator", "c1", [0, 5, 0], [1, 0, 0], "pin = true")
-    text += f'[[point]]\nname = "m"\nat = [100, 5, 0]\n[gravity]\nacceleration = [0, 0, -9810]\ndensity = {DENSITY}\n'
+    text += f'[[point]]\nname = "m"\nat = [100, 5, 0]\ntolerance = 0.05\n[gravity]\nacceleration = [0, 0, -9810]\ndensity = {DENSITY}\n'
     tables, _ = computed(program, tmp_path, FLAT, text)
     load = DENSITY * 9810 * WIDTH  # N/mm
     sag = 5 * load * 200**4 / (384 * YOUNG * INERTIA)
@@ -95,6 +98,8 @@ def test_gravity_on_three_locators(program, tmp_path):
     assert tables["points"]["deviation"][0] == pytest.approx(sag, rel=5e-3)
     force = tables["supports"].set_index("name")["force"]
     assert np.allclose([force["a1"] + force["a2"], force["a3"]], 100 * load, rtol=1e-3)
+    said = call("report", tmp_path / "clamped.out", "--fixture", tmp_path / "fixture.toml", "--verdict", expect=1)
+    assert "deviation of point m: not good: +0.0" in said and "not good: deviation of point m;" in said
     # The nodes that are held lie 0.5 mm beside the places.
     assert np.allclose(tables["supports"]["gap"][:3], 0, atol=0.02 * sag)
 
@@ -122,6 +127,60 @@ def test_arc_clamped_flat(program, tmp_path, orders):
     x = 25.0
     off = curvature * x**2 / 2 - curvature * (3 * 50 * x**2 - x**3) / (4 * 50)
     assert tables["points"]["deviation"][0] == pytest.approx(-off, rel=0.02)
+
+
+ONE = "one_sided = true"
+PINS = (("b1", [0, 5, 0], [0, 1, 0]), ("b2", [200, 5, 0], [0, 1, 0]), ("c1", [0, 5, 0], [1, 0, 0]))
+WEIGHT = DENSITY * 9810 * WIDTH  # N/mm
+
+
+@pytest.mark.parametrize("direction", [(0, 0, -1), (0.6, 0, -0.8)])
+def test_rests_and_a_clamp_with_force(program, tmp_path, direction):
+    """Rests at x = 0.5 and 150 carry the weight of a strip and the force at its end, on its upper face; a pin takes the
+    force along x: equilibrium of forces and moments."""
+    text = "".join(support("locator", name, at, [0, 0, 1], ONE)
+                   for name, at in (("a1", [0.5, 0.5, 0]), ("a2", [0.5, 9.5, 0]), ("a3", [150, 5, 0])))
+    text += "".join(support("locator", *pin, "pin = true") for pin in PINS)
+    text += support("clamp", "d1", [199.5, 5, 0], list(direction), "force = 0.02")
+    text += f'[gravity]\nacceleration = [0, 0, -9810]\ndensity = {DENSITY}\n'
+    tables, _ = computed(program, tmp_path, FLAT, text)
+    force = tables["supports"].set_index("name")["force"]
+    along, down = 0.02 * direction[0], -0.02 * direction[2]
+    middle = (200 * WEIGHT * 100 + down * 200 + along * 1) / 150  # the nodes at x = 0, 150 and 200
+    assert np.allclose([force["a1"] + force["a2"], force["a3"]], [200 * WEIGHT + down - middle, middle], rtol=2e-3)
+    assert force["d1"] == pytest.approx(0.02, rel=1e-3)
+    assert force["c1"] == pytest.approx(-along, abs=1e-6)
+
+
+@pytest.mark.parametrize("force", [1, 4])
+def test_rest_that_is_reached_or_not(program, tmp_path, force):
+    """An arc of the curvature k, pressed by a force at its end towards a rest: it reaches the rest at
+    P = 3 E I k/(2 L), above which the rest carries the difference."""
+    text = support("locator", "a1", [0.5, 0.5, 0], [0, 0, 1], ONE) + support("locator", "a2", [0.5, 9.5, 0], [0, 0, 1], ONE)
+    text += support("locator", "b1", [0, 5, 0], [0, 1, 0], "pin = true")
+    text += support("clamp", "r1", [49.5, 5, 0], [0, 0, 1], ONE)
+    text += support("clamp", "d1", [49.5, 5, 0], [0, 0, -1], f"order = 2\nforce = {force}")
+    text += f'[gravity]\nacceleration = [0, 0, -9810]\ndensity = {DENSITY}\n'
+    tables, _ = computed(program, tmp_path, BENT, text, 'mirror = ["x"]\n')
+    call("deviation", tmp_path / "part.out", "--fixture", tmp_path / "fixture.toml")
+    free = pd.read_csv(tmp_path / "part.out" / "deviation" / "map.csv").dropna()
+    stiffness = 3 * YOUNG * INERTIA / 50**3
+    needed = free[free["x"] > 49]["z"].mean() * stiffness - 0.375 * WEIGHT * 50
+    assert 2 < needed < 3
+    carried = tables["supports"].set_index("name")["force"]
+    assert carried["d1"] == pytest.approx(force, rel=1e-3)
+    assert carried["r1"] == pytest.approx(max(force - needed, 0), rel=0.01)
+    assert carried["a1"] + carried["a2"] + carried["r1"] == pytest.approx(force + 50 * WEIGHT, rel=1e-3)
+
+
+def test_wrong_supports_are_refused(tmp_path):
+    """A clamp with force and stop, a pin that is one-sided."""
+    for kind, more, message in (("clamp", "force = 1\nstop = 0.1", "force beside stop"),
+                                ("clamp", "force = -1", "expected a force > 0"),
+                                ("locator", "pin = true\n" + ONE, "pin beside one_sided")):
+        (tmp_path / "fixture.toml").write_text(support(kind, "a1", [0, 0, 0], [0, 0, 1], more))
+        with pytest.raises(Problem, match=message):
+            read_fixture(tmp_path / "fixture.toml")
 
 
 def test_direction_that_is_no_axis(program, tmp_path):

@@ -78,7 +78,7 @@ def aligned(start: Rigid, equations: Callable[[Rigid], Equations], mirror: Seque
         if not len(distance):
             raise Problem("nothing of the part lies beside the nominal shape; is it in the same place?")
         centre = place.mean(axis=0)
-        size = max(float(np.linalg.norm(place - centre, axis=1).max()), 1e-9)
+        size = max(float(np.linalg.norm(place - centre, axis=1).max()), 1.0)  # mm; a single place has no extent
         rows = np.hstack([gradient, np.cross(place - centre, gradient) / size])
         factor = np.sqrt(weight / weight.sum())[:, None]
         step = np.zeros(6)

@@ -3,6 +3,7 @@
 
     dd3 compensate rail.toml --tools tools
     dd3 compensate rail.toml --tools tools --loops 4 --tolerance 0.1 --mirror y
+    dd3 compensate rail.toml --tools tools --fixture fixture.toml
 
 The displacement adjustment: where the free part, aligned as a whole, lies beside the wanted shape, the surface of the
 tools is moved by as much to the other side, and the process runs again. The wanted shape is the sheet under the tools
@@ -12,7 +13,9 @@ displacement is a smooth function along the drawn sheet and moves all tools with
 joined, gaps between tools stay. Where a run stops with the corrected tools, half of the correction is tried, then a
 quarter. The input files place blank and tools; at the start they need room for what the surfaces are moved by.
 --mirror names the planes of symmetry x = 0, y = 0; --half-turn tells that the whole part is its own image after half a
-turn about z.
+turn about z. With --fixture the part is compared as `dd3 deviation` does, in the place of the tools: clamped, if the
+fixture has clamps or gravity, else free after its alignment; its nominal shape, by default the drawn sheet of the first
+loop, is the wanted one.
 
 --tools names the parameter (*PARAMETER) of the input files that holds the folder of the tool surfaces. The results are
 in <process>.compensate: the surfaces of each loop, deviations.csv, and the best tools as .bez and STEP files. The
@@ -34,6 +37,8 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from dd3.errors import LOG, Problem, Stopped
+from dd3.fixture import Fixture, read_fixture
+from dd3.fixture_target import Measured, Target
 from dd3.gmsh_session import session
 from dd3.nominal import at_places, normal_feet, sheet_surface
 from dd3.process import (
@@ -66,11 +71,11 @@ UNKNOWN = "E115"  # code of the error of a parameter that an input file does not
 
 @dataclass
 class Shapes:
-    """The lower face of the part under the tools, and free: positions of nodes, mm. The displacements of the tools by
-    the names of their files, under which the sheet was drawn."""
+    """The sheet under the tools: initial and present places of the nodes of its lower face, mm, and the displacements
+    of the tools by the names of their files."""
 
+    initial: np.ndarray
     drawn: np.ndarray
-    free: np.ndarray
     tools: dict[str, np.ndarray]
 
 
@@ -91,14 +96,23 @@ def drawn_step(sheet: Sheet, job: dict[str, Any]) -> int:
 
 
 def shapes_of(process: Process) -> Shapes:
-    """Return the shapes of the part after a run of the process; the draw is the first operation."""
-    first, last = Sheet(process.operations[0].folder), Sheet(process.operations[-1].folder)
+    """Return the sheet under the tools of the first operation, the draw."""
+    first = Sheet(process.operations[0].folder)
     job = read_job(process.operations[0].folder)
     step = drawn_step(first, job)
-    start, drawn = lower_face(first, step)
+    return Shapes(*lower_face(first, step), tool_places(process.operations[0].folder, job, first, step))
+
+
+def free_part(process: Process, shapes: Shapes, wanted: Any, around: Any, mirror: Sequence[str], border: float
+              ) -> Measured:
+    """Return the free part of the last operation after its best alignment with a surface; nodes beyond the border of
+    this are to be on its continuation `around`."""
+    last = Sheet(process.operations[-1].folder)
     initial, free = lower_face(last, last.last)
-    tools = tool_places(process.operations[0].folder, job, first, step)
-    return Shapes(at_places(start, drawn, initial), free, tools)
+    place, goal, compared = aligned(free, at_places(shapes.initial, shapes.drawn, initial), wanted, mirror, border)
+    if not compared.all():
+        goal[~compared] = normal_feet(place[~compared], around)[0]
+    return Measured(initial, place, goal, compared)
 
 
 def tool_places(folder: Path, job: dict[str, Any], sheet: Sheet, step: int) -> dict[str, np.ndarray]:
@@ -276,10 +290,10 @@ def write_moved(folder: Path, loop: Loop, places: dict[str, np.ndarray], move: A
 
 
 def compensate(program: Path, process: Process, parameter: str, loops: int, tolerance: float, factor: float,
-               mirror: Sequence[str], size: float | None, threads: int | None = None, half_turn: bool = False
-               ) -> list[tuple[float, float]]:
+               mirror: Sequence[str], size: float | None, threads: int | None = None, half_turn: bool = False,
+               fixture: Fixture | None = None) -> list[tuple[float, float]]:
     """Run the loops; return the largest deviation of each and its root mean square, mm. Where the process stops with
-    the corrected tools, the correction is halved."""
+    the corrected tools, the correction is halved. fixture: in which the part is measured."""
     work = made_folder(process.path.parent / f"{process.path.stem}.compensate")
     operations = with_parameter(program, process, parameter)
     run_process(program, process, threads)
@@ -288,31 +302,32 @@ def compensate(program: Path, process: Process, parameter: str, loops: int, tole
     thickness = max(job["sheet"]["thickness"])
     length = size or 5 * thickness
     wanted, around = drawn_surface(process), drawn_surface(process, BEYOND * thickness)
+    target = Target(fixture, Sheet(process.operations[0].folder), BEYOND * thickness) if fixture else None
     found: list[Loop] = []
     stopped: Problem | None = None
     while True:
         shapes = shapes_of(process)
-        place, goal, compared = aligned(shapes.free, shapes.drawn, wanted, mirror, BORDER * thickness)
-        deviation = np.linalg.norm(goal - place, axis=1)[compared]
-        if not compared.all():
-            goal[~compared] = normal_feet(place[~compared], around)[0]
+        part = (target.measure(program, process.operations[-1].folder, work, ["--threads", threads] if threads else [])
+                if target else free_part(process, shapes, wanted, around, mirror, BORDER * thickness))
+        deviation = part.distances()
         found.append(Loop(tools, float(deviation.max()), float(np.sqrt((deviation**2).mean()))))
         LOG.info(f"loop {len(found) - 1}: largest deviation {found[-1].largest:.4g} mm, root mean square "
-              f"{found[-1].rms:.4g} mm" + f", without {sum(~compared)} nodes beyond the border of the wanted shape"
-              * bool(sum(~compared)))
+              f"{found[-1].rms:.4g} mm" + f", without {sum(~part.compared)} nodes beyond the border of the wanted shape"
+              * (not part.compared.all()))
         if found[-1].largest <= tolerance or len(found) > loops:
             break
         folder = made_folder(work / f"loop_{len(found)}")
         surface = drawn_surface(process, BEYOND * thickness)
-        for part in PARTS:
-            field = smooth_field(shapes.drawn, part * factor * (goal - place), mirror, length, half_turn)
+        drawn = at_places(shapes.initial, shapes.drawn, part.initial)
+        for fraction in PARTS:
+            field = smooth_field(drawn, fraction * factor * (part.goal - part.place), mirror, length, half_turn)
             tools = write_moved(folder, found[-1], shapes.tools, along_sheet(field, surface, thickness),
                                 length if len(found) == 1 else np.inf,
                                 f"loop {len(found)} of dd3 compensate {process.path.name}")
             stopped = run_with(program, process, operations, {parameter: str(folder.resolve())}, threads)
             if not isinstance(stopped, Stopped):
                 break
-            LOG.info(f"loop {len(found)} with {part:g} of the correction stopped: {stopped}")
+            LOG.info(f"loop {len(found)} with {fraction:g} of the correction stopped: {stopped}")
         if stopped:
             break
     best = min(found, key=lambda loop: loop.largest)
@@ -345,11 +360,15 @@ def main(words: Sequence[str] | None = None) -> None:
                         help="the whole part is its own image after half a turn about z")
     parser.add_argument("--size", type=float, metavar="LENGTH",
                         help="largest side of the patches that are moved, mm (5 thicknesses)")
+    parser.add_argument("--fixture", type=Path, metavar="FILE",
+                        help="file of the fixture, .toml, in which the part is measured (default: free, best fit)")
     options = parser.parse_args(words)
     if options.loops < 0:
         parser.error("--loops: takes 0 or more")
     process = read_process(options.file)
+    fixture = read_fixture(options.fixture) if options.fixture else None
+    mirror = sorted({*options.mirror, *(fixture.mirror if fixture else [])})
     compensate(find_program(options.program), process, options.tools, options.loops, options.tolerance, options.factor,
-               sorted(set(options.mirror)), options.size, options.threads, options.half_turn)
+               mirror, options.size, options.threads, options.half_turn, fixture)
     if options.report:
         print(write_report(process))

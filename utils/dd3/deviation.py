@@ -106,11 +106,11 @@ def nominal_face(fixture: Fixture, sheet: Sheet) -> Face:
 
 class Comparison:
     """A part beside its nominal shape. nominal: its surface, normals on the side of the measured face; wanted: the face
-    of the sheet that it is, None of a surface from a file."""
+    of the sheet that it is, by default that of the fixture, None of a surface from a file."""
 
-    def __init__(self, fixture: Fixture, sheet: Sheet, step: int) -> None:
+    def __init__(self, fixture: Fixture, sheet: Sheet, step: int, wanted: Face | None = None) -> None:
         self.fixture, self.part = fixture, face_of(sheet, step, fixture.upper)
-        self.wanted = None if fixture.surface else nominal_face(fixture, sheet)
+        self.wanted = wanted or (None if fixture.surface else nominal_face(fixture, sheet))
         surface = read_surface(fixture.surface) if fixture.surface else self.wanted.surface  # type: ignore[union-attr]
         self.nominal = turned_to(surface, self.part.surface)
         self.weights = sheet.areas(step)[self.part.nodes]
@@ -312,8 +312,9 @@ def forces_of(part: Face, supports: Sequence[Support]) -> list[float]:
     phase = part.sheet.phases[int(job["phase"][part.step]) - 1]["name"]
     rows = history[history["phase"] == phase]
     row = rows.iloc[(rows["progress"] - float(job["progress"][part.step])).abs().argmin()]
-    return [float(sum(row[f"{support.name}_r{axis}"] * x for axis, x in zip(AXES, support.direction)))
-            for support in supports]
+    signs = [("f", -1) if support.one_sided else ("r", 1) for support in supports]  # on the pad; on the part
+    return [float(sum(sign * row[f"{support.name}_{letter}{axis}"] * x for axis, x in zip(AXES, support.direction)))
+            for support, (letter, sign) in zip(supports, signs)]
 
 
 def is_in_fixture(fixture: Fixture, sheet: Sheet) -> bool:
@@ -322,7 +323,8 @@ def is_in_fixture(fixture: Fixture, sheet: Sheet) -> bool:
     if not fixture.locators or not path.is_file():
         return False
     columns = read_frame(sheet.folder, "history.csv").columns
-    return all(f"{support.name}_rx" in columns for support in (*fixture.locators, *fixture.clamps))
+    return all(f"{support.name}_{'fx' if support.one_sided else 'rx'}" in columns
+               for support in (*fixture.locators, *fixture.clamps))
 
 
 def judged(fixture: Fixture, found: Deviations) -> list[verdict.Item]:
@@ -357,7 +359,11 @@ def compare(run: str | Path, fixture: Fixture, at: str | None = None) -> Deviati
     """Return the deviations of the sheet of a run at a step, by default the last one."""
     sheet = Sheet(run)
     step = sheet.step_at(at) if at else sheet.last
-    return Comparison(fixture, sheet, step).deviations(is_in_fixture(fixture, sheet))
+    clamped = is_in_fixture(fixture, sheet)
+    if clamped and not (fixture.run or fixture.surface):
+        raise Problem(f"{run}: is in the fixture, and not the run whose drawn sheet is the nominal shape; expected run "
+                      f"or surface in [nominal] of {fixture.path}")
+    return Comparison(fixture, sheet, step).deviations(clamped)
 
 
 def colours(low: float, high: float, limits: tuple[float, float]) -> list[str]:
@@ -441,7 +447,8 @@ def main(words: Sequence[str] | None = None) -> None:
     fixture = read_fixture(options.fixture)
     if options.deck:
         from dd3.fixture_deck import write_deck
-        write_deck(options.run, fixture, options.deck)
+        sheet = Sheet(options.run)
+        write_deck(Comparison(fixture, sheet, sheet.last), options.deck)
         LOG.info(options.deck)
         return
     found = compare(options.run, fixture, options.at)

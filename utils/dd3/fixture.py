@@ -18,12 +18,19 @@
     at = [40, 0, 0]                     # mm, in the coordinates of the nominal shape
     direction = [0, 0, 1]               # from the fixture to the part
     pin = false                         # true: a hole, the point of the sheet that lies there
+    one_sided = false                   # true: it can push only, in any direction
     [[clamp]]
     name = "c1"
     at = [80, 0, 0]
     direction = [0, 0, -1]
     order = 1                           # clamps of the same order close together
     stop = 0.0                          # mm before the nominal place
+    one_sided = false
+    [[clamp]]
+    name = "c2"
+    at = [80, 10, 0]
+    direction = [0, 0, -1]
+    force = 50                          # N, in place of a stop; one-sided
     [[point]]
     name = "p1"
     at = [60, 10, 0]
@@ -52,8 +59,8 @@ KEYS: dict[str, Any] = {"title": str, "face": str, "tolerance": (*NUMBER, list),
 NOMINAL: dict[str, Any] = {"run": str, "at": (str, *NUMBER), "surface": str}
 ALIGNMENT: dict[str, Any] = {"by": str, "region": list, "points": list}
 PLACE: dict[str, Any] = {"name": str, "at": list}
-LOCATOR = {**PLACE, "direction": list, "pin": bool}
-CLAMP = {**PLACE, "direction": list, "order": int, "stop": NUMBER}
+LOCATOR = {**PLACE, "direction": list, "pin": bool, "one_sided": bool}
+CLAMP = {**PLACE, "direction": list, "order": int, "stop": NUMBER, "one_sided": bool, "force": NUMBER}
 POINT = {**PLACE, "tolerance": (*NUMBER, list)}
 GRAVITY: dict[str, Any] = {"acceleration": list, "density": NUMBER}
 
@@ -61,7 +68,8 @@ GRAVITY: dict[str, Any] = {"acceleration": list, "density": NUMBER}
 @dataclass
 class Support:
     """A locator or a clamp: its name, its place on the nominal shape, mm, and the unit vector from the fixture to the
-    part. order: 0 of a locator, else that of the clamp; stop: mm before the nominal place."""
+    part. order: 0 of a locator, else that of the clamp; stop: mm before the nominal place. one_sided: it can push only;
+    force: with which it pushes, N, None: it moves to its stop."""
 
     name: str
     at: np.ndarray
@@ -69,6 +77,8 @@ class Support:
     pin: bool = False
     order: int = 0
     stop: float = 0.0
+    one_sided: bool = False
+    force: float | None = None
 
 
 @dataclass
@@ -188,8 +198,7 @@ def read_fixture(path: Path) -> Fixture:
     fixture = Fixture(path, table.get("title", path.stem), table.get("face", "upper") == "upper", table.limits(),
                       sorted(set(table.get("mirror", []))), [str(text) for text in table.get("section", [])])
     add_nominal(fixture, Table(path, table.get("nominal", {}), NOMINAL, " in [nominal]"))
-    fixture.locators = [Support(row.get("name"), row.vector("at"), row.direction(), row.get("pin", False))
-                        for row in table.named("locator", LOCATOR)]
+    fixture.locators = [locator_of(row) for row in table.named("locator", LOCATOR)]
     fixture.clamps = [clamp_of(row) for row in table.named("clamp", CLAMP)]
     for row in table.named("point", POINT):
         limits = row.limits() or fixture.limits
@@ -202,12 +211,26 @@ def read_fixture(path: Path) -> Fixture:
     return fixture
 
 
+def locator_of(row: Table) -> Support:
+    """Return a locator."""
+    if row.get("pin") and row.get("one_sided"):
+        raise row.problem("pin beside one_sided; expected one of them, as a pin holds the part in both senses")
+    return Support(row.get("name"), row.vector("at"), row.direction(), row.get("pin", False),
+                   one_sided=row.get("one_sided", False))
+
+
 def clamp_of(row: Table) -> Support:
     """Return a clamp."""
     if row.get("order", 1) < 1:
         raise row.problem(f"order is {row.get('order')}; expected 1 or more")
+    force = row.get("force")
+    if force is not None and not force > 0:
+        raise row.problem(f"force is {force}; expected a force > 0, N")
+    if force is not None and ("stop" in row.values or row.get("one_sided") is False):
+        raise row.problem("force beside stop or one_sided = false; expected a clamp that moves to its stop, or one "
+                          "that pushes with its force")
     return Support(row.get("name"), row.vector("at"), row.direction(), False, row.get("order", 1),
-                   float(row.get("stop", 0.0)))
+                   float(row.get("stop", 0.0)), force is not None or row.get("one_sided", False), force)
 
 
 def add_nominal(fixture: Fixture, table: Table) -> None:

@@ -161,7 +161,8 @@ def sprung(distance: float | None, tolerance: float | None) -> list[Item]:
 def judge(job: dict[str, Any], waves: float | None, limits: Sequence[Item], springback: Sequence[Item]) -> list[Item]:
     """Return all items.
 
-    waves: largest height under a holder and in walls, mm. limits, springback: items of `splits` and `sprung`.
+    waves: largest height under a holder and in walls, mm. limits, springback: items of `splits`, of `sprung` and the
+    fixture.
     """
     phases = list(ended_phases(job))
     return [end_of_run(job), *formed(phases, waves), *slides(phases), *holders(phases, waves), *limits, *springback,

@@ -4,18 +4,20 @@
     dd3 report cup.out --mirror x y --low-carbon-steel
     dd3 report rail.out --mirror y --curve dc06.csv --section y=0 --section x=30 --output rail_report
     dd3 report cup.out --mirror x y --waves 0.2 --tolerance 0.5 --verdict
+    dd3 report rail.out --fixture fixture.toml --verdict
     dd3 report cup.out --mirror x y --measured force.csv --measured thickness.csv
 
 The page is one file, which a browser shows without a network: the part in 3D with all fields at all steps, its tools,
 sections and forming limit diagram, and curves that tell their values under the mouse. It begins with the verdict:
-whether the sheet is formed to the tools, its waves under the holder, splits, thinning, springback; --verdict prints it
-and ends with exit code 1 if something is not good. Then come the thinning, the deformed sheet between its tools, the
-forming limit diagram, thickness along sections, the outline before and after, the springback of a sheet that was
-released (its distance from the drawn shape, sections, angles, twist), measured curves, the refinements and the final
-mesh where elements were divided in the run, for each phase the tools' motions and forces, what limited its increments
-and what warned, the statistics of the run, and the set-up. --mirror completes a model at
-its planes of symmetry; forces are multiplied accordingly. Forming limit curve and thinning limit are those of `dd3
-fld`; without a curve for the material it is not judged. The strains are those at the middle of the sheet.
+whether the sheet is formed to the tools, its waves under the holder, splits, thinning, springback, and with --fixture
+its deviations as `dd3 deviation` finds them; --verdict prints it and ends with exit code 1 if something is not good.
+Then come the thinning, the deformed sheet between its tools, the forming limit diagram, thickness along sections, the
+outline before and after, the springback of a sheet that was released (its distance from the drawn shape, sections,
+angles, twist), deviations in the fixture, measured curves, the refinements and the final mesh where elements were
+divided in the run, for each phase the tools' motions and forces, what limited its increments and what warned, the
+statistics of the run, and the set-up. --mirror completes a model at its planes of symmetry; forces are multiplied
+accordingly. Forming limit curve and thinning limit are those of `dd3 fld`; without a curve for the material it is not
+judged. The strains are those at the middle of the sheet.
 """
 
 import html
@@ -37,6 +39,7 @@ from dd3.report.course import (
     add_verdict,
     add_warnings,
 )
+from dd3.report.deviation import add_deviation
 from dd3.report.page import STYLE, Report
 from dd3.report.sheet import (
     add_limit_diagram,
@@ -67,17 +70,17 @@ def page(report: Report) -> str:
 """
 
 
-STEPS = (add_view, add_pictures, add_limit_diagram, add_sections, add_outline, add_springback, add_measured,
-         add_refinements, add_phases, add_beads, add_warnings, add_statistics, add_setup)
+STEPS = (add_view, add_pictures, add_limit_diagram, add_sections, add_outline, add_springback, add_deviation,
+         add_measured, add_refinements, add_phases, add_beads, add_warnings, add_statistics, add_setup)
 
 
 def make(run: str | Path, **settings: Any) -> Report:
     """Write the page about a run; return it, with its `path` and its `verdict`.
 
     settings: mirror, planes of symmetry to complete the model at, such as "xy"; section, planes such as "y=0" or an
-    angle in degrees (through the middle); measured, tables of measured curves; waves and tolerance, largest height of
-    waves and largest distance from the drawn shape, mm; output, folder of page and pictures (report in that of the
-    run); criteria, those of the forming limit.
+    angle in degrees (through the middle); measured, tables of measured curves; fixture, file of the checking fixture;
+    waves and tolerance, largest height of waves and largest distance from the drawn shape, mm; output, folder of page
+    and pictures (report in that of the run); criteria, those of the forming limit.
     """
     report = Report(run, **settings)
     for step in each(STEPS, "report"):
@@ -120,6 +123,8 @@ def parsed(words: Sequence[str] | None) -> dict[str, Any]:
     parser.add_argument("--waves", type=float, metavar="MM", help="largest height of waves under a holder and in walls")
     parser.add_argument("--tolerance", type=float, metavar="MM",
                         help="largest distance of the free shape from the drawn one")
+    parser.add_argument("--fixture", type=Path, metavar="FILE",
+                        help="file of the checking fixture, .toml, with which the sheet is compared")
     parser.add_argument("--verdict", action="store_true",
                         help="print the verdict, and end with exit code 1 if something is not good")
     parser.add_argument("--output", type=Path, metavar="DIR", help="folder of page and pictures (default: RUN/report)")

@@ -37,7 +37,7 @@ def add_summary(report: Report) -> None:
 def add_verdict(report: Report) -> None:
     """Add what is good and what is not."""
     report.verdict = verdict.judge(report.job, report.waves, report.splits,
-                                   verdict.sprung(report.sprung, report.tolerance))
+                                   [*verdict.sprung(report.sprung, report.tolerance), *report.deviations])
     rows = "".join(f'<tr><th>{html.escape(item.name)}</th><td><span class="key" style="background:'
                    f'{verdict.COLOURS[item.answer]}"></span>{item.answer}</td><td>{html.escape(item.text)}</td></tr>'
                    for item in report.verdict)

@@ -37,11 +37,13 @@ class Report:
 
     def __init__(self, run: str | Path, mirror: Sequence[str] = (), section: Sequence[str] = (),
                  measured: Sequence[str | Path] = (), waves: float | None = None, tolerance: float | None = None,
-                 output: str | Path | None = None, criteria: Criteria | None = None) -> None:
+                 output: str | Path | None = None, criteria: Criteria | None = None,
+                 fixture: Path | None = None) -> None:
         if any(limit is not None and not limit > 0 for limit in (waves, tolerance)):
             raise Problem("--waves and --tolerance take a positive number")
         self.mirror, self.sections, self.measured = sorted(set("".join(mirror))), list(section), measured
         self.waves, self.tolerance, self.criteria = waves, tolerance, criteria or Criteria()
+        self.fixture = fixture
         self.sheet = Sheet(run)
         self.folder = self.sheet.folder
         self.run = pictures.Run(self.folder)
@@ -57,6 +59,7 @@ class Report:
         self.limits: list[str] = []  # results of the forming limit diagram: by the curve, by the thinning
         self.splits: list[verdict.Item] = []
         self.sprung: float | None = None  # largest distance of the free shape from the drawn one, mm
+        self.deviations: list[verdict.Item] = []
         self.verdict: list[verdict.Item] = []
 
     def field(self, name: str) -> np.ndarray:
