@@ -176,8 +176,8 @@ contains
     key = [ &
       row("patches", kind_text, "", "", "file of the surface's Bezier patches (.bez)"), &
       row("friction", kind_real, "", "0", "coefficient of friction", lower=zero), &
-      row("friction_law", kind_law, "", "-", "factor on `friction` by the contact pressure; "// &
-          "several are multiplied", repeatable=.true.), &
+      row("friction_law", kind_law, "", "-", "factor on `friction` by pressure, speed or "// &
+          "strain; several are multiplied", repeatable=.true.), &
       row("compliance", kind_real, "mm/MPa", "0", "deflection of the surface along its "// &
           "normal per contact pressure, by the elasticity of the tool; 0: rigid", &
           lower=zero), &
