@@ -4,18 +4,18 @@ module dd3_app_law_help
   use dd3_base_text, only : newline, same_name
   use dd3_contact_friction, only : friction_laws
   use dd3_input_help, only : describe_key, escaped
-  use dd3_material_check, only : describe_laws, law_backstress, law_hardening, law_modulus, &
-      law_rate, law_temperature, law_yield
+  use dd3_material_check, only : describe_laws, law_backstress, law_fracture, law_hardening, &
+      law_modulus, law_rate, law_temperature, law_yield
   use dd3_material_description, only : description_t
   implicit none
   private
   public :: friction_markdown, help_friction, help_laws, help_law, law_reference_markdown
 
   !> Kinds of laws, and their keys in the input.
-  integer, parameter :: kinds(6) = [law_yield, law_hardening, law_backstress, law_modulus, &
-      law_rate, law_temperature]
-  character(len=11), parameter :: keys(6) = [character(len=11) :: "yield", "hardening", &
-      "backstress", "modulus", "rate", "temperature"]
+  integer, parameter :: kinds(7) = [law_yield, law_hardening, law_backstress, law_modulus, &
+      law_rate, law_temperature, law_fracture]
+  character(len=11), parameter :: keys(7) = [character(len=11) :: "yield", "hardening", &
+      "backstress", "modulus", "rate", "temperature", "fracture"]
   !> Key of the laws of friction.
   character(len=*), parameter :: friction_key = "friction_law"
   !> Width of the column of names, in characters.

@@ -56,6 +56,7 @@ contains
       call check_law(case%material(i)%modulus, directory, errors)
       call check_law(case%material(i)%rate, directory, errors)
       call check_law(case%material(i)%temperature, directory, errors)
+      call check_law(case%material(i)%fracture, directory, errors)
       do k = 1, size(case%material(i)%backstress)
         call check_law(case%material(i)%backstress(k), directory, errors)
       end do

@@ -28,7 +28,7 @@ module dd3_contact_compliant
   use dd3_base_kinds, only : wp
   use dd3_contact_friction, only : friction_limit_t, friction_t, sliding_t
   use dd3_contact_operator, only : coulomb_operator, no_direction, normal_force_t, status_gap, &
-      status_slip, status_stick, traction_t
+      status_slip, status_stick, tangential_length, traction_t
   implicit none
   private
   public :: layer_t, new_layer, fraction_of, layer_gap, gap_under_force, place_under_force
@@ -194,7 +194,7 @@ contains
     traction%by_u = scale
     traction%by_lambda = memory
     traction%smallest = no_direction*(norm2(lambda) + norm2(committed) + scale*norm2(slip))
-    limit = friction%limit(-sigma_n%value, sliding)
+    limit = friction%limit(-sigma_n%value, sliding, tangential_length(normal, slip))
     if (status == status_gap) then
       tangential = traction%value - dot_product(normal, traction%value)*normal
       status = status_stick
@@ -202,7 +202,7 @@ contains
         status = status_slip
       end if
     end if
-    call coulomb_operator(status, normal, dnormal, sigma_n, traction, limit, force, d, e)
+    call coulomb_operator(status, normal, dnormal, sigma_n, traction, slip, limit, force, d, e)
   end subroutine compliant_operator
 
 end module dd3_contact_compliant

@@ -1,14 +1,16 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Coulomb's friction with a coefficient that depends on the contact pressure:
-!>     mu = mu_0 f_1(p) f_2(p) ...,    p = N/A
-!> with the normal force N of a point and its area A. What a contact law needs is the limit of the
-!> tangential force, Y(N) = mu N, and its slope
-!>     dY/dN = mu (1 + e_1 + e_2 + ...),    e_i = p f_i'/f_i.
-!> The factors are
-!>     power    f = (p/p_0)^(n-1), p_min <= p <= p_max,
-!>     table    straight between points p:f,
-!> constant beyond the least and the largest pressure.
-!> Source: Filzek, Ludwig and Groche, Proc. IDDRG (2011), power law.
+!> Coulomb's friction with a coefficient that depends on the contact pressure, on the speed of
+!> sliding and on the plastic strain of the sheet:
+!>     mu = mu_0 f_1 f_2 ...,    p = N/A,  v = v_c + w/dt
+!> with the normal force N of a point, its area A and the length w of its slip in the time dt. What
+!> a contact law needs is the limit of the tangential force, Y = mu N, and its slopes
+!>     dY/dN = mu (1 + sum of p f_i'/f_i),    dY/dw = mu N/dt (sum of f_i'/f_i),
+!> the sums over the factors of the pressure and over those of the speed. The factors are
+!>     power       f = (p/p_0)^(n-1), p_min <= p <= p_max,
+!>     stribeck    f = r + (1 - r) exp(-(v/v_0)^n),
+!>     tables      straight between points, constant beyond the first and the last.
+!> Source: Filzek, Ludwig and Groche, Proc. IDDRG (2011), power law; Armstrong-Helouvry, Dupont and
+!> Canudas de Wit, Automatica 30 (1994) 1083-1138, the exponential curve after Stribeck.
 module dd3_contact_friction
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : kind_real, kind_text, law_value_t, pair_name, row
@@ -19,14 +21,19 @@ module dd3_contact_friction
   public :: friction_t, friction_limit_t, sliding_t, coulomb
   public :: friction_laws, check_friction_law
 
-  !> A factor on the coefficient of friction.
+  !> What a factor depends on.
+  integer, parameter :: by_pressure = 1, by_speed = 2, by_strain = 3
+
+  !> A factor on the coefficient of friction, and what it depends on, x: a pressure, MPa, a speed,
+  !> mm/s, or a strain.
   type :: factor_t
-    !> Pressures beyond which the factor is constant, MPa.
+    integer :: by = by_pressure
+    !> Values of x beyond which the factor is constant.
     real(wp) :: least = 0.0_wp, largest = huge(1.0_wp)
-    !> Reference pressure p_0, MPa, and exponent n - 1 of the power law.
-    real(wp) :: reference = 1.0_wp, exponent = 0.0_wp
-    !> Points of a table, MPa and factor; not allocated for a power law.
-    real(wp), allocatable :: pressure(:), value(:)
+    !> p_0 and n - 1 of the power law, v_0 and n of Stribeck's curve and its r.
+    real(wp) :: reference = 1.0_wp, exponent = 0.0_wp, rest = 0.0_wp
+    !> Points of a table, x and factor; not allocated for a formula.
+    real(wp), allocatable :: place(:), value(:)
   end type factor_t
 
   !> Friction of a tool.
@@ -38,19 +45,25 @@ module dd3_contact_friction
   contains
     procedure :: add_law
     procedure :: varies
+    procedure :: needs_time
     procedure :: limit
     procedure :: numbers
   end type friction_t
 
-  !> What friction depends on at a point beside its normal force.
+  !> What friction depends on at a point beside its normal force and its slip.
   type :: sliding_t
     !> mm2.
     real(wp) :: area = 1.0_wp
+    !> Speed v_c without slip, mm/s, and speed per slip 1/dt, 1/s.
+    real(wp) :: speed = 0.0_wp, per_slip = 0.0_wp
+    !> Equivalent plastic strain of the sheet.
+    real(wp) :: strain = 0.0_wp
   end type sliding_t
 
-  !> Limit of the tangential force, N, and its derivative in the normal force.
+  !> Limit of the tangential force, N, its derivative in the normal force and that in the length of
+  !> the slip, N/mm.
   type :: friction_limit_t
-    real(wp) :: value = 0.0_wp, slope = 0.0_wp
+    real(wp) :: value = 0.0_wp, slope = 0.0_wp, by_slip = 0.0_wp
   end type friction_limit_t
 
 contains
@@ -66,7 +79,7 @@ contains
   function friction_laws() result(law)
     type(description_t), allocatable :: law(:)
 
-    allocate (law(2))
+    allocate (law(5))
     law(1)%name = "power"
     law(1)%title = "power of the contact pressure: factor (p/p0)^(n-1)"
     law(1)%source = "Filzek, Ludwig, Groche, IDDRG 2011"
@@ -79,24 +92,44 @@ contains
           0.0_wp, lower_open=.true.), &
       row("p_max", kind_real, "MPa", "-", "pressure above which the coefficient is constant", &
           0.0_wp, lower_open=.true.)])
-    law(2)%name = "table"
-    law(2)%title = "points p:f of pressure and factor joined by straight lines"
-    law(2)%source = "-"
-    allocate (law(2)%rows, source=[ &
-      row(pair_name, kind_real, "MPa", "-", "factor f on `friction` at the pressure p, MPa", &
-          0.0_wp, lower_open=.true., repeatable=.true.), &
-      row("file", kind_text, "", "-", &
-          "file with p and f in each line, in place of the points; # begins a comment")])
+    law(2) = table_law("table", "pressure", "MPa")
+    law(3)%name = "stribeck"
+    law(3)%title = "curve after Stribeck: factor r + (1 - r) exp(-(v/v0)^n) by the speed v of "// &
+        "sliding"
+    law(3)%source = "Armstrong-Helouvry et al. 1994"
+    allocate (law(3)%rows, source=[ &
+      row("v0", kind_real, "mm/s", "", "speed at which the decrease has reached 63 %", 0.0_wp, &
+          lower_open=.true.), &
+      row("r", kind_real, "", "", "factor at high speeds; it is 1 at rest", 0.0_wp, &
+          lower_open=.true.), &
+      row("n", kind_real, "", "1", "exponent", 1.0_wp)])
+    law(4) = table_law("speed_table", "speed", "mm/s")
+    law(5) = table_law("strain_table", "equivalent plastic strain", "")
   end function friction_laws
 
-  !> Require what the bounds of the parameters do not: pressures that rise, and a friction stress
+  !> Describe a table.
+  type(description_t) function table_law(name, what, unit) result(law)
+    !> Name of the law, name and unit of what it depends on.
+    character(len=*), intent(in) :: name, what, unit
+
+    law%name = name
+    law%title = "points of "//what//" and factor joined by straight lines"
+    law%source = "-"
+    allocate (law%rows, source=[ &
+      row(pair_name, kind_real, unit, "-", "factor on `friction` at the "//what, 0.0_wp, &
+          lower_open=.true., repeatable=.true.), &
+      row("file", kind_text, "", "-", "file with "//what//" and factor in each line, in place "// &
+          "of the points; # begins a comment")])
+  end function table_law
+
+  !> Require what the bounds of the parameters do not: points that rise, and a friction stress
   !> that does not fall with the pressure.
   subroutine check_friction_law(name, values, problems)
     character(len=*), intent(in) :: name
     type(law_value_t), intent(in) :: values(:)
     type(problem_t), allocatable, intent(out) :: problems(:)
 
-    real(wp), allocatable :: p(:), f(:)
+    real(wp), allocatable :: x(:), f(:)
     integer :: i
 
     allocate (problems(0))
@@ -104,22 +137,24 @@ contains
       if (value_of(values, "p_max", huge(1.0_wp)) <= value_of(values, "p_min")) then
         call add_problem(problems, 0, "p_max is not above p_min", "p_min < p_max")
       end if
-      return
     end if
-    p = values%abscissa
+    if (same_name(name, "power") .or. same_name(name, "stribeck")) return
+    x = values%abscissa
     f = values%value
-    if (size(p) < 2) then
-      call add_problem(problems, 0, "a table needs two points at least", "table p1:f1 p2:f2 ...")
+    if (size(x) < 2) then
+      call add_problem(problems, 0, "a table needs two points at least", trim(name)// &
+          " x1:f1 x2:f2 ...")
       return
     end if
-    if (p(1) < 0.0_wp) call add_problem(problems, 1, "the pressure is negative", &
-        "pressures from 0 on")
-    do i = 2, size(p)
-      if (.not. p(i) > p(i - 1)) then
-        call add_problem(problems, i, "the pressure "//to_text(p(i))// &
-            " is not larger than the one before", "pressures that rise")
-      else if (f(i) + p(i)*(f(i) - f(i - 1))/(p(i) - p(i - 1)) < 0.0_wp) then
-        call add_problem(problems, i, "the friction stress f p falls before "//to_text(p(i))// &
+    if (x(1) < 0.0_wp) call add_problem(problems, 1, "the first value is negative", &
+        "values from 0 on")
+    do i = 2, size(x)
+      if (.not. x(i) > x(i - 1)) then
+        call add_problem(problems, i, to_text(x(i))//" is not larger than the value before", &
+            "values that rise")
+      else if (same_name(name, "table") .and. &
+          f(i) + x(i)*(f(i) - f(i - 1))/(x(i) - x(i - 1)) < 0.0_wp) then
+        call add_problem(problems, i, "the friction stress f p falls before "//to_text(x(i))// &
             " MPa", "a factor that falls more slowly than 1/p")
       end if
     end do
@@ -138,11 +173,18 @@ contains
       factor%exponent = value_of(values, "n") - 1.0_wp
       factor%least = value_of(values, "p_min")
       factor%largest = value_of(values, "p_max", huge(1.0_wp))
+    else if (same_name(name, "stribeck")) then
+      factor%by = by_speed
+      factor%reference = value_of(values, "v0")
+      factor%exponent = value_of(values, "n", 1.0_wp)
+      factor%rest = value_of(values, "r")
     else
-      factor%pressure = values%abscissa
+      if (same_name(name, "speed_table")) factor%by = by_speed
+      if (same_name(name, "strain_table")) factor%by = by_strain
+      factor%place = values%abscissa
       factor%value = values%value
-      factor%least = factor%pressure(1)
-      factor%largest = factor%pressure(size(values))
+      factor%least = factor%place(1)
+      factor%largest = factor%place(size(values))
     end if
     if (.not. allocated(self%factor)) allocate (self%factor(0))
     self%factor = [self%factor, factor]
@@ -155,50 +197,71 @@ contains
     varies = allocated(self%factor)
   end function varies
 
+  !> Whether the coefficient depends on the speed.
+  pure logical function needs_time(self)
+    class(friction_t), intent(in) :: self
+
+    needs_time = .false.
+    if (allocated(self%factor)) needs_time = any(self%factor%by == by_speed)
+  end function needs_time
+
   !> Kernel: return the limit of the tangential force at a point.
-  pure type(friction_limit_t) function limit(self, normal_force, sliding)
+  pure type(friction_limit_t) function limit(self, normal_force, sliding, slip)
     class(friction_t), intent(in) :: self
     !> Positive in compression, N.
     real(wp), intent(in) :: normal_force
     type(sliding_t), intent(in) :: sliding
+    !> Length of the tangential slip, mm.
+    real(wp), intent(in) :: slip
 
-    real(wp) :: mu, factor, elasticity, one
+    real(wp) :: mu, factor, slope, x(3), sums(3)
     integer :: i
 
+    limit%value = self%coefficient*normal_force
+    limit%slope = self%coefficient
+    if (.not. allocated(self%factor)) return
+    x(by_pressure) = normal_force/sliding%area
+    x(by_speed) = sliding%speed + sliding%per_slip*slip
+    x(by_strain) = sliding%strain
     mu = self%coefficient
-    one = 1.0_wp
-    if (allocated(self%factor)) then
-      do i = 1, size(self%factor)
-        call evaluate(self%factor(i), normal_force/sliding%area, factor, elasticity)
+    sums = 0.0_wp
+    do i = 1, size(self%factor)
+      associate (by => self%factor(i)%by)
+        call evaluate(self%factor(i), x(by), factor, slope)
         mu = mu*factor
-        one = one + elasticity
-      end do
-    end if
+        sums(by) = sums(by) + slope/factor
+      end associate
+    end do
     limit%value = mu*normal_force
-    limit%slope = mu*one
+    limit%slope = mu*(1.0_wp + x(by_pressure)*sums(by_pressure))
+    limit%by_slip = mu*normal_force*sliding%per_slip*sums(by_speed)
   end function limit
 
-  !> Kernel: evaluate a factor and its elasticity p f'/f.
-  pure subroutine evaluate(self, pressure, factor, elasticity)
+  !> Kernel: evaluate a factor and its derivative.
+  pure subroutine evaluate(self, place, factor, slope)
     type(factor_t), intent(in) :: self
-    !> MPa.
-    real(wp), intent(in) :: pressure
-    real(wp), intent(out) :: factor, elasticity
+    !> MPa, mm/s or a strain.
+    real(wp), intent(in) :: place
+    real(wp), intent(out) :: factor, slope
 
-    real(wp) :: p, slope
+    real(wp) :: x, falling
     integer :: i
 
-    p = min(max(pressure, self%least), self%largest)
-    elasticity = 0.0_wp
-    if (.not. allocated(self%pressure)) then
-      factor = (p/self%reference)**self%exponent
-      if (p >= pressure .and. p <= pressure) elasticity = self%exponent
-      return
+    x = min(max(place, self%least), self%largest)
+    if (allocated(self%place)) then
+      i = min(count(self%place <= x), size(self%place) - 1)
+      slope = (self%value(i + 1) - self%value(i))/(self%place(i + 1) - self%place(i))
+      factor = self%value(i) + slope*(x - self%place(i))
+    else if (self%by == by_pressure) then
+      factor = (x/self%reference)**self%exponent
+      slope = self%exponent*factor/x
+    else
+      falling = (1.0_wp - self%rest)*exp(-(x/self%reference)**self%exponent)
+      factor = self%rest + falling
+      slope = -falling*self%exponent/self%reference &
+          *(x/self%reference)**(self%exponent - 1.0_wp)
     end if
-    i = min(count(self%pressure <= p), size(self%pressure) - 1)
-    slope = (self%value(i + 1) - self%value(i))/(self%pressure(i + 1) - self%pressure(i))
-    factor = self%value(i) + slope*(p - self%pressure(i))
-    if (p >= pressure .and. p <= pressure) elasticity = p*slope/factor
+    if (.not. (x >= place .and. x <= place)) slope = 0.0_wp
   end subroutine evaluate
 
   !> Return all that defines the friction, for check sums.
@@ -212,8 +275,9 @@ contains
     if (.not. allocated(self%factor)) return
     do i = 1, size(self%factor)
       associate (factor => self%factor(i))
-        numbers = [numbers, factor%least, factor%largest, factor%reference, factor%exponent]
-        if (allocated(factor%pressure)) numbers = [numbers, factor%pressure, factor%value]
+        numbers = [numbers, real(factor%by, wp), factor%least, factor%largest, factor%reference, &
+            factor%exponent, factor%rest]
+        if (allocated(factor%place)) numbers = [numbers, factor%place, factor%value]
       end associate
     end do
   end function numbers

@@ -10,10 +10,11 @@
 !>     gap    sigma_n > 0                                F = 0
 !>     stick  sigma_n <= 0, |sigma_t| <= Y     F = sigma_n n + sigma_t
 !>     slip   sigma_n <= 0, |sigma_t| >  Y     F = sigma_n n + Y t
-!> with t = sigma_t / |sigma_t| and the limit Y(-sigma_n) of the friction law, -mu sigma_n of a
-!> constant coefficient. Without friction every node in contact slips. The linearisation is
+!> with t = sigma_t / |sigma_t| and the limit Y(-sigma_n, |T w|) of the friction law, -mu sigma_n of
+!> a constant coefficient. Without friction every node in contact slips. The linearisation is
 !> dF = D du + E dlambda; with N = dn/dx and v = lambda + p_t w, d(sigma_n)/du = N lambda + p n and
-!> d(sigma_t)/du = p_t T - (n.v) N - n (N v)^T.
+!> d(sigma_t)/du = p_t T - (n.v) N - n (N v)^T. Where Y depends on the speed, t dY/d|T w| times the
+!> gradient of |T w| is added to D.
 !>
 !> Arguments of all procedures: `normal` n; `distance` d, mm; `dnormal` N, symmetric, 1/mm;
 !> `lambda`, N; `slip` w, mm; `penalty` p and p_t, N/mm; `friction` and `sliding`, which give Y.
@@ -28,7 +29,7 @@ module dd3_contact_operator
   private
   public :: status_gap, status_stick, status_slip, contact_status, round_off
   public :: contact_operator_of_status, coulomb_operator
-  public :: normal_force_t, traction_t, no_direction
+  public :: normal_force_t, traction_t, no_direction, tangential_length
 
   !> Contact status of a node: not in contact, sticking or slipping.
   integer, parameter :: status_gap = 0, status_stick = 1, status_slip = 2
@@ -76,7 +77,7 @@ contains
       v = lambda + penalty(2)*slip
       tangential = v - dot_product(normal, v)*normal
       status = status_stick
-      limit = friction%limit(-sigma_n, sliding)
+      limit = friction%limit(-sigma_n, sliding, tangential_length(normal, slip))
       if (norm(tangential) > max(limit%value, penalty(2)*round_off)) status = status_slip
     end if
   end function contact_status
@@ -103,17 +104,20 @@ contains
     sigma_n%by_lambda = 1.0_wp
     traction = traction_t(lambda + penalty(2)*slip, penalty(2), 1.0_wp, &
         no_direction*(norm(lambda) + penalty(2)*norm(slip)))
-    call coulomb_operator(status, normal, dnormal, sigma_n, traction, &
-        friction%limit(-sigma_n%value, sliding), force, d, e)
+    call coulomb_operator(status, normal, dnormal, sigma_n, traction, slip, &
+        friction%limit(-sigma_n%value, sliding, tangential_length(normal, slip)), force, d, e)
   end subroutine contact_operator_of_status
 
   !> Kernel: evaluate force and linearisation of a node in contact by Coulomb's law.
-  pure subroutine coulomb_operator(status, normal, dnormal, sigma_n, traction, limit, force, d, e)
+  pure subroutine coulomb_operator(status, normal, dnormal, sigma_n, traction, slip, limit, &
+      force, d, e)
     !> Stick or slip.
     integer, intent(in) :: status
     real(wp), intent(in) :: normal(3), dnormal(3, 3)
     type(normal_force_t), intent(in) :: sigma_n
     type(traction_t), intent(in) :: traction
+    !> mm.
+    real(wp), intent(in) :: slip(3)
     type(friction_limit_t), intent(in) :: limit
     real(wp), intent(out) :: force(3), d(3, 3), e(3, 3)
 
@@ -139,25 +143,27 @@ contains
         e(j, j) = e(j, j) + traction%by_lambda
       end do
     else
-      call slip_operator(normal, dnormal, sigma_n, traction, tangential, dtangential, limit, &
-          force, d, e)
+      call slip_operator(normal, dnormal, sigma_n, traction, tangential, dtangential, slip, &
+          limit, force, d, e)
     end if
   end subroutine coulomb_operator
 
   !> Kernel: evaluate force and linearisation of a slipping node.
   pure subroutine slip_operator(normal, dnormal, sigma_n, traction, tangential, dtangential, &
-      limit, force, d, e)
+      slip, limit, force, d, e)
     real(wp), intent(in) :: normal(3), dnormal(3, 3)
     type(normal_force_t), intent(in) :: sigma_n
     type(traction_t), intent(in) :: traction
     !> sigma_t, N, and its derivative in the displacement, N/mm.
     real(wp), intent(in) :: tangential(3), dtangential(3, 3)
+    !> mm.
+    real(wp), intent(in) :: slip(3)
     type(friction_limit_t), intent(in) :: limit
     real(wp), intent(out) :: force(3), d(3, 3), e(3, 3)
 
     !> Derivative of the force in sigma_n.
     real(wp) :: by_normal(3)
-    real(wp) :: length, quotient, t(3), p_t(3, 3)
+    real(wp) :: length, quotient, t(3), p_t(3, 3), by_speed(3)
     integer :: j
 
     length = norm(tangential)
@@ -176,12 +182,36 @@ contains
       p_t(j, j) = p_t(j, j) + quotient
     end do
     d = matmul(p_t, dtangential)
+    by_speed = 0.0_wp
+    if (abs(limit%by_slip) > 0.0_wp) by_speed = limit%by_slip*length_gradient(normal, dnormal, slip)
     do j = 1, 3
-      d(:, j) = d(:, j) + by_normal*sigma_n%by_u(j) + sigma_n%value*dnormal(:, j)
+      d(:, j) = d(:, j) + by_normal*sigma_n%by_u(j) + sigma_n%value*dnormal(:, j) + t*by_speed(j)
       e(:, j) = traction%by_lambda*p_t(:, j) &
           + (sigma_n%by_lambda*by_normal - traction%by_lambda*matmul(p_t, normal))*normal(j)
     end do
   end subroutine slip_operator
+
+  !> Return the length of the tangential part of a vector.
+  pure real(wp) function tangential_length(normal, a) result(length)
+    real(wp), intent(in) :: normal(3), a(3)
+
+    length = norm(a - dot_product(normal, a)*normal)
+  end function tangential_length
+
+  !> Return the gradient of the tangential length of the slip in the displacement; zero without
+  !> slip.
+  pure function length_gradient(normal, dnormal, slip) result(gradient)
+    real(wp), intent(in) :: normal(3), dnormal(3, 3), slip(3)
+    real(wp) :: gradient(3)
+
+    real(wp) :: along(3), length, normal_slip
+
+    normal_slip = dot_product(normal, slip)
+    along = slip - normal_slip*normal
+    length = norm(along)
+    gradient = 0.0_wp
+    if (length > round_off) gradient = (along - normal_slip*matmul(dnormal, along))/length
+  end function length_gradient
 
   !> Return the norm of a vector. norm2 calls the library, which scales against overflow.
   pure real(wp) function norm(a)

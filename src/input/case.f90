@@ -165,6 +165,10 @@ module dd3_input_case
     type(law_spec_t) :: modulus
     !> Laws of the strain rate and of the temperature; without a name for none.
     type(law_spec_t) :: rate, temperature
+    !> Law of fracture, likewise, and points of the forming limit curve, minor and major strain in
+    !> pairs; not allocated for none.
+    type(law_spec_t) :: fracture
+    real(wp), allocatable :: forming_limit(:)
     !> Temperature of the undeformed material.
     real(wp) :: initial_temperature = 20.0_wp
     !> Heat capacity, mJ/(t K), 0 without heating, and the part of plastic work that heats.

@@ -45,6 +45,11 @@ contains
     if (block%has("temperature")) then
       call fill_law(material%temperature, block%entry(block%find("temperature")), block%folder)
     end if
+    material%fracture%name = ""
+    if (block%has("fracture")) then
+      call fill_law(material%fracture, block%entry(block%find("fracture")), block%folder)
+    end if
+    if (block%has("forming_limit")) material%forming_limit = block%numbers("forming_limit")
     if (block%has("initial_temperature")) material%initial_temperature = &
         block%number("initial_temperature")
     if (block%has("heat_capacity")) material%heat_capacity = block%number("heat_capacity")

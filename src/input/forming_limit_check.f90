@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Check of the points of a material's forming limit curve, which the program itself does not use.
+!> Check of the points of a material's forming limit curve.
 module dd3_input_forming_limit_check
   use dd3_base_error, only : error_list_t
   use dd3_base_kinds, only : wp

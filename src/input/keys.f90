@@ -160,9 +160,11 @@ contains
           "of the mesh of *MESH, else 0 0 1", count=3), &
       row("grade", kind_name, "", "-", "kind of sheet metal, for the estimate of its forming "// &
           "limit curve by dd3 fld and dd3 report", choices="low_carbon_steel"), &
-      row("forming_limit", kind_reals, "", "-", "forming limit curve for dd3 fld and dd3 "// &
-          "report: minor and major logarithmic strain in pairs, the minor one increasing", &
-          count=0), &
+      row("forming_limit", kind_reals, "", "-", "forming limit curve, for warnings, dd3 fld "// &
+          "and dd3 report: minor and major logarithmic strain in pairs, the minor one "// &
+          "increasing", count=0), &
+      row("fracture", kind_law, "", "none", "law of fracture and its parameters: damage "// &
+          "without influence on the stress, and a warning at fracture"), &
       row("thinning_limit", kind_real, "", "-", "largest thinning allowed by dd3 fld and dd3 "// &
           "report; default there: 0.25", lower=zero, upper=1.0_wp, lower_open=.true., &
           upper_open=.true.)]
@@ -174,8 +176,8 @@ contains
     key = [ &
       row("patches", kind_text, "", "", "file of the surface's Bezier patches (.bez)"), &
       row("friction", kind_real, "", "0", "coefficient of friction", lower=zero), &
-      row("friction_law", kind_law, "", "-", "factor on `friction` by the contact pressure; "// &
-          "several are multiplied", repeatable=.true.), &
+      row("friction_law", kind_law, "", "-", "factor on `friction` by pressure, speed or "// &
+          "strain; several are multiplied", repeatable=.true.), &
       row("compliance", kind_real, "mm/MPa", "0", "deflection of the surface along its "// &
           "normal per contact pressure, by the elasticity of the tool; 0: rigid", &
           lower=zero), &

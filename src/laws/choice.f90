@@ -6,20 +6,20 @@ module dd3_laws_choice
   use dd3_base_parameter, only : parameter_t
   use dd3_input_case, only : law_spec_t
   use dd3_input_law, only : check_law_name, check_law_values
-  use dd3_material_check, only : check_together, known_laws, law_backstress, law_modulus, &
-      law_rate, law_rows, law_temperature
+  use dd3_material_check, only : check_together, known_laws, law_backstress, law_fracture, &
+      law_modulus, law_rate, law_rows, law_temperature
   use dd3_material_description, only : law_choice_t, problem_t
   implicit none
   private
   public :: choose_checked, choose_law
 
   !> Names of the kinds of laws in messages.
-  character(len=22), parameter :: kind_name(6) = [character(len=22) :: "yield criterion", &
+  character(len=22), parameter :: kind_name(7) = [character(len=22) :: "yield criterion", &
       "hardening law", "back-stress law", "law of the modulus", "law of the strain rate", &
-      "law of the temperature"]
+      "law of the temperature", "law of fracture"]
   !> Kinds of laws that a material may lack, and the input word for that.
-  integer, parameter :: optional_kind(4) = [law_backstress, law_modulus, law_rate, &
-      law_temperature]
+  integer, parameter :: optional_kind(5) = [law_backstress, law_modulus, law_rate, &
+      law_temperature, law_fracture]
   character(len=24), parameter :: no_law = "none"
 
 contains

@@ -7,10 +7,11 @@ module dd3_laws_material
   use dd3_base_text, only : to_text
   use dd3_input_case, only : material_spec_t
   use dd3_laws_choice, only : choose_checked
-  use dd3_material_check, only : law_backstress, law_hardening, law_modulus, law_rate, &
-      law_temperature, law_yield
+  use dd3_material_check, only : law_backstress, law_fracture, law_hardening, law_modulus, &
+      law_rate, law_temperature, law_yield
   use dd3_material_composition, only : heat_t
   use dd3_material_description, only : law_choice_t
+  use dd3_material_limits, only : forming_limit_t
   use dd3_material_material, only : material_t, new_material
   implicit none
   private
@@ -27,7 +28,7 @@ contains
     !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
 
-    type(law_choice_t) :: yield, hardening, modulus, rate, temperature
+    type(law_choice_t) :: yield, hardening, modulus, rate, temperature, fracture
     type(law_choice_t), allocatable :: backstress(:)
     type(digest_t) :: digest
     integer :: found, i
@@ -45,10 +46,12 @@ contains
     if (spec%source%has("rate")) call choose_checked(law_rate, spec%rate, rate, errors)
     if (spec%source%has("temperature")) call choose_checked(law_temperature, spec%temperature, &
         temperature, errors)
+    if (spec%source%has("fracture")) call choose_checked(law_fracture, spec%fracture, fracture, &
+        errors)
     if (errors%count > found .or. .not. spec%source%valid) return
     if (yield%name == "" .or. hardening%name == "") return
     call new_material(material, spec%young, spec%poisson, yield, hardening, backstress, &
-        modulus, rate, temperature, heating(spec))
+        modulus, rate, temperature, heating(spec), fracture, limit_of(spec))
     call check_modulus(material, spec, errors)
     call check_heating(material, spec, errors)
     if (errors%count > found) return
@@ -64,8 +67,22 @@ contains
       if (allocated(material%laws%temperature%law)) call add_law(digest, temperature)
       call digest%add([material%laws%heat%initial, material%laws%heat%per_work])
     end if
+    if (material%laws%at_damage > 0) call add_law(digest, fracture)
+    if (material%laws%at_forming_limit > 0) call digest%add(spec%forming_limit)
     check_sum = digest%value()
   end subroutine make_material
+
+  !> Return the forming limit curve of a material; without points if there is none.
+  pure type(forming_limit_t) function limit_of(spec) result(limit)
+    type(material_spec_t), intent(in) :: spec
+
+    if (.not. allocated(spec%forming_limit)) return
+    associate (n => size(spec%forming_limit))
+      if (n < 4 .or. modulo(n, 2) > 0) return
+      limit%minor = spec%forming_limit(1:n:2)
+      limit%major = spec%forming_limit(2:n:2)
+    end associate
+  end function limit_of
 
   !> Return the temperature and the heating of a material.
   pure type(heat_t) function heating(spec)

@@ -6,6 +6,8 @@ module dd3_material_check
   use dd3_material_backstress_law, only : backstress_slot_t
   use dd3_material_backstress_registry, only : describe_backstresses, find_backstress
   use dd3_material_description, only : description_t, problem_t
+  use dd3_material_fracture_law, only : fracture_slot_t
+  use dd3_material_fracture_registry, only : describe_fractures, find_fracture
   use dd3_material_hardening_law, only : hardening_slot_t
   use dd3_material_hardening_registry, only : describe_hardenings, find_hardening
   use dd3_material_modulus_law, only : modulus_slot_t
@@ -19,12 +21,13 @@ module dd3_material_check
   use dd3_material_yield_registry, only : describe_criteria, find_criterion
   implicit none
   private
-  public :: law_yield, law_hardening, law_backstress, law_modulus, law_rate, law_temperature
+  public :: law_yield, law_hardening, law_backstress, law_modulus, law_rate, law_temperature, &
+      law_fracture
   public :: describe_laws, known_laws, law_rows, check_together
 
   !> The kinds of laws.
   integer, parameter :: law_yield = 1, law_hardening = 2, law_backstress = 3, &
-      law_modulus = 4, law_rate = 5, law_temperature = 6
+      law_modulus = 4, law_rate = 5, law_temperature = 6, law_fracture = 7
 
 contains
 
@@ -45,8 +48,10 @@ contains
       call describe_moduli(descriptions)
     case (law_rate)
       call describe_rates(descriptions)
-    case default
+    case (law_temperature)
       call describe_temperatures(descriptions)
+    case default
+      call describe_fractures(descriptions)
     end select
   end subroutine describe_laws
 
@@ -104,6 +109,7 @@ contains
     type(modulus_slot_t) :: modulus
     type(rate_slot_t) :: rate
     type(temperature_slot_t) :: temperature
+    type(fracture_slot_t) :: fracture
     integer :: before
 
     before = 0
@@ -129,9 +135,12 @@ contains
     case (law_rate)
       call find_rate(name, rate)
       call rate%law%check(values, problems)
-    case default
+    case (law_temperature)
       call find_temperature(name, temperature)
       call temperature%law%check(values, problems)
+    case default
+      call find_fracture(name, fracture)
+      call fracture%law%check(values, problems)
     end select
     problems = problems(before + 1:)
   end subroutine check_together

@@ -3,7 +3,9 @@
 !> which add up, and possibly laws of Young's modulus, of the strain rate and of the temperature.
 !> The internal variables of a point are the equivalent plastic strain, six components of each
 !> back-stress, those of the hardening law, then the rate of the plastic strain if the flow stress
-!> depends on it, and the rise of the temperature if plastic work heats the material.
+!> depends on it, the rise of the temperature if plastic work heats the material, and what only
+!> reports read: the damage of a law of fracture, and the largest ratio of the plastic strain to the
+!> forming limit.
 module dd3_material_composition
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
@@ -11,7 +13,9 @@ module dd3_material_composition
   use dd3_material_description, only : internal_variable_t
   use dd3_material_elasticity, only : elasticity_t
   use dd3_material_flow, only : flow_direction_t, flow_response_t, back_response_t
+  use dd3_material_fracture_law, only : fracture_slot_t
   use dd3_material_hardening_law, only : hardening_t
+  use dd3_material_limits, only : damage_after, forming_limit_t
   use dd3_material_modulus_law, only : modulus_slot_t
   use dd3_material_rate_law, only : rate_slot_t
   use dd3_material_temperature_law, only : temperature_slot_t
@@ -42,6 +46,9 @@ module dd3_material_composition
     !> Not allocated for a flow stress that does not depend on the temperature.
     type(temperature_slot_t) :: temperature
     type(heat_t) :: heat
+    !> Not allocated without a law of fracture, or without a forming limit curve.
+    type(fracture_slot_t) :: fracture
+    type(forming_limit_t), allocatable :: forming_limit
     !> Number of internal variables of a point.
     integer :: n_internal = 1
     !> Indices of the hardening law's first and last own internal variable.
@@ -49,6 +56,8 @@ module dd3_material_composition
     !> Indices of the rate of the plastic strain and of the rise of the temperature; 0 if there is
     !> none.
     integer :: at_rate = 0, at_temperature = 0
+    !> Those of the damage and of the ratio to the forming limit, and their number.
+    integer :: at_damage = 0, at_forming_limit = 0, n_reported = 0
     !> Whether there is a back-stress of any kind.
     logical :: kinematic = .false.
     !> Whether neither back-stress nor flow stress depends on the direction of flow: the matrix of
@@ -79,10 +88,26 @@ contains
       self%n_internal = self%n_internal + 1
       self%at_temperature = self%n_internal
     end if
+    call add_reported(self)
     self%kinematic = size(self%backstress) > 0 .or. self%hardening%owns_back_stress
     self%softens = allocated(self%modulus%law)
     self%symmetric = .not. (self%kinematic .or. self%hardening%path_dependent)
   end subroutine complete
+
+  !> Append the internal variables that only reports read.
+  subroutine add_reported(self)
+    type(composition_t), intent(inout) :: self
+
+    if (allocated(self%fracture%law)) then
+      self%n_internal = self%n_internal + 1
+      self%at_damage = self%n_internal
+    end if
+    if (allocated(self%forming_limit)) then
+      self%n_internal = self%n_internal + 1
+      self%at_forming_limit = self%n_internal
+    end if
+    self%n_reported = count([self%at_damage, self%at_forming_limit] > 0)
+  end subroutine add_reported
 
   !> Describe the internal variables of a point in their order, the equivalent plastic strain first.
   !> Names that occur more than once are numbered: back_stress_1, back_stress_2.
@@ -106,6 +131,10 @@ contains
         "rate of the equivalent plastic strain in the last increment", 1)]
     if (self%at_temperature > 0) rows = [rows, internal_variable_t("temperature", "C", &
         "temperature by adiabatic heating", 1, offset=self%heat%initial)]
+    if (self%at_damage > 0) rows = [rows, internal_variable_t("fracture_damage", "", &
+        "damage of the law of fracture, which reaches 1 at fracture", 1)]
+    if (self%at_forming_limit > 0) rows = [rows, internal_variable_t("forming_limit_ratio", "", &
+        "largest plastic strain so far over that of the forming limit in the direction of flow", 1)]
     rows(1)%first = 1
     do i = 2, size(rows)
       rows(i)%first = rows(i - 1)%first + rows(i - 1)%n_component
@@ -308,6 +337,7 @@ contains
     if (self%viscous) evolved(self%at_rate) = rate_after(self, start, increment, frequency)
     if (.not. increment > 0.0_wp) return
     evolved(1) = start(1) + increment
+    if (self%n_reported > 0) call evolve_reported(self, increment, stress, direction, evolved)
     if (self%at_temperature > 0) evolved(self%at_temperature) = start(self%at_temperature) &
         + self%heat%per_work*increment*dot_product(stress, direction%gradient)
     do i = 1, size(self%backstress)
@@ -319,5 +349,25 @@ contains
           evolved(self%first:self%last))
     end if
   end subroutine evolve_internal_variables
+
+  !> Evolve the internal variables that only reports read over a plastic increment.
+  pure subroutine evolve_reported(self, increment, stress, direction, evolved)
+    type(composition_t), intent(in) :: self
+    real(wp), intent(in) :: increment, stress(6)
+    type(flow_direction_t), intent(in) :: direction
+    !> With the plastic strain of the end.
+    real(wp), intent(inout) :: evolved(self%n_internal)
+
+    if (self%at_damage > 0) then
+      associate (damage => evolved(self%at_damage))
+        damage = damage_after(self%fracture%law, damage, increment, stress)
+      end associate
+    end if
+    if (self%at_forming_limit > 0) then
+      associate (ratio => evolved(self%at_forming_limit))
+        ratio = max(ratio, self%forming_limit%ratio(evolved(1), direction%gradient))
+      end associate
+    end if
+  end subroutine evolve_reported
 
 end module dd3_material_composition

@@ -14,8 +14,10 @@ module dd3_material_material
   use dd3_material_elasticity, only : elastic_stress, new_elasticity, &
       strain_of => elastic_strain
   use dd3_material_flow, only : flow_direction_t, flow_response_t, back_response_t
+  use dd3_material_fracture_registry, only : find_fracture
   use dd3_material_hardening_law, only : hardening_slot_t
   use dd3_material_hardening_registry, only : find_hardening
+  use dd3_material_limits, only : forming_limit_t
   use dd3_material_modulus_registry, only : find_modulus
   use dd3_material_rate_registry, only : find_rate
   use dd3_material_return_mapping, only : step_t
@@ -32,7 +34,7 @@ module dd3_material_material
     !> Young's modulus, MPa.
     real(wp) :: young = 0.0_wp
     !> Number of internal variables of a point: equivalent plastic strain first, then six for each
-    !> back-stress, then the hardening law's own, rate and temperature. All are initially zero.
+    !> back-stress, then the hardening law's own, rate, temperature and limits, initially zero.
     integer :: n_internal = 1
     !> Number of substeps of a strain increment before any failure.
     integer :: least_substeps = 1
@@ -57,7 +59,7 @@ contains
 
   !> Initialise a material with laws whose parameters have been checked.
   subroutine new_material(self, young, poisson, criterion, hardening, backstress, modulus, rate, &
-      temperature, heat)
+      temperature, heat, fracture, forming_limit)
     type(material_t), intent(out) :: self
     !> Young's modulus, MPa; Poisson's ratio, above -1 and below 1/2.
     real(wp), intent(in) :: young, poisson
@@ -71,6 +73,9 @@ contains
     !> Law of the temperature, likewise, and heating; none by default.
     type(law_choice_t), intent(in), optional :: temperature
     type(heat_t), intent(in), optional :: heat
+    !> Law of fracture, likewise, and forming limit curve; none if it has no points.
+    type(law_choice_t), intent(in), optional :: fracture
+    type(forming_limit_t), intent(in), optional :: forming_limit
 
     type(yield_slot_t) :: found_criterion
     type(hardening_slot_t) :: found_hardening
@@ -103,6 +108,13 @@ contains
           temperature%values)
     end if
     if (present(heat)) self%laws%heat = heat
+    if (present(fracture)) then
+      call find_fracture(fracture%name, self%laws%fracture)
+      if (allocated(self%laws%fracture%law)) call self%laws%fracture%law%set(fracture%values)
+    end if
+    if (present(forming_limit)) then
+      if (allocated(forming_limit%minor)) self%laws%forming_limit = forming_limit
+    end if
     call complete(self%laws)
     self%n_internal = self%laws%n_internal
   end subroutine new_material

@@ -89,7 +89,8 @@ contains
   pure logical function carries_derivatives(laws)
     type(composition_t), intent(in) :: laws
 
-    carries_derivatives = laws%symmetric .and. laws%n_internal == 1 .and. .not. laws%softens
+    carries_derivatives = laws%symmetric .and. laws%n_internal - laws%n_reported == 1 &
+        .and. .not. laws%softens
   end function carries_derivatives
 
   !> Evaluate the consistent tangent of a strain increment that has been integrated. Over several

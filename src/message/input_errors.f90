@@ -123,12 +123,12 @@ contains
       row("E156", "friction law without a coefficient", "`friction_law` is a factor on "// &
           "`friction`, which is zero or not given.", "`friction`; 1 if the factors of a table "// &
           "are coefficients."), &
-      row("E157", "friction law", "The pressures of the law do not rise, or the friction "// &
-          "stress falls where the pressure rises.", "Pressures in order; factors that fall "// &
-          "more slowly than 1/p."), &
-      row("E163", "strain rate without a time", "The flow stress depends on the strain rate, "// &
-          "but a phase, or a point, has no time.", "`duration` or `speed` in each "// &
-          "`*PHASE`, also in those of springback; `duration` in `*POINT`."), &
+      row("E157", "friction law", "The values of a table do not rise, or the friction "// &
+          "stress falls where the pressure rises.", "Values in order; factors of the "// &
+          "pressure that fall more slowly than 1/p."), &
+      row("E163", "strain rate without a time", "The flow stress depends on the strain "// &
+          "rate, or the friction on the speed, but a phase, or a point, has no time.", &
+          "`duration` or `speed` in each `*PHASE`, also in those of springback; `duration` in `*POINT`."), &
       row("E164", "times", "The time of a phase or of a point is given twice, or for "// &
           "something it does not have.", "`duration`; or `speed` where the controlling "// &
           "tool has a `move`."), &

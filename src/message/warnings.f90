@@ -198,7 +198,20 @@ contains
           "A curve of `*TRIM` that bounds what stays goes beyond the border of the sheet, "// &
           "where this stays as it is; or it lies beside the sheet and cuts nothing, as holes "// &
           "of a whole part do beside a quarter of it.", &
-          "Curves on the sheet, or a larger blank; nothing for holes beside a quarter.")]
+          "Curves on the sheet, or a larger blank; nothing for holes beside a quarter."), &
+      row("W126", "fracture", &
+          "The damage of the law `fracture` reaches 1 at a point of the sheet for the first "// &
+          "time. The stress is not reduced: what follows is that of a sheet without a crack.", &
+          "Larger radii, less restraint and friction; the field `fracture_damage`."), &
+      row("W127", "forming limit", &
+          "The plastic strain reaches that of `forming_limit`, in the direction of flow, at "// &
+          "all points through the thickness of an element for the first time.", &
+          "Larger radii, less restraint and friction; the field `forming_limit_ratio`."), &
+      row("W128", "heat of plastic work", &
+          "At the end of the run, or where it stops, adiabatic heating leaves less than a tenth "// &
+          "of the flow stress at a point: the sheet is near melting.", &
+          "Check `heat_capacity`, `density` and the law `temperature`; a slow process is not "// &
+          "adiabatic.")]
   end function sheet_warnings
 
   !> Return the notes.
@@ -234,7 +247,10 @@ contains
           "None."), &
       row("N110", "deflection of elastic tools", &
           "Largest deflection of a tool with `compliance` at the end of the phase, "// &
-          "and the contact pressure there.", "None.")]
+          "and the contact pressure there.", "None."), &
+      row("N111", "largest damage and ratio to the forming limit", &
+          "At the end of the run, or where it stops, of materials with `fracture` or "// &
+          "`forming_limit`; 1 is the limit.", "None.")]
   end function notes
 
 end module dd3_message_warnings

@@ -23,6 +23,8 @@ module dd3_model_contact_state
     type(hint_t), allocatable :: hint(:, :)
     !> Path on the tools while it slips, `(n_contact)`, mm.
     real(wp), allocatable :: slip_path(:)
+    !> Speed of sliding in the last increment, `(n_contact)`, mm/s; 0 without a time.
+    real(wp), allocatable :: slip_speed(:)
   contains
     procedure :: walk
   end type contact_state_t
@@ -34,7 +36,8 @@ contains
     type(contact_state_t), intent(out) :: self
     integer, intent(in) :: n_tool, n_contact
 
-    allocate (self%lambda(3, n_contact), self%slip_path(n_contact), source=0.0_wp)
+    allocate (self%lambda(3, n_contact), self%slip_path(n_contact), self%slip_speed(n_contact), &
+        source=0.0_wp)
     allocate (self%status(n_contact), self%tool(n_contact), source=0)
     allocate (self%place(n_contact), source=0.5_wp)
     allocate (self%hint(n_tool, n_contact))
@@ -52,6 +55,7 @@ contains
       call visitor%reals_of_items(of_points, "place", 1, n, self%place)
       call visit_hints("hint", size(self%hint, 1), n, self%hint, visitor)
       call visitor%reals_of_items(of_points, "slip_path", 1, n, self%slip_path)
+      call visitor%reals_of_items(of_points, "slip_speed", 1, n, self%slip_speed)
     end associate
   end subroutine walk
 

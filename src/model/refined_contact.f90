@@ -90,6 +90,7 @@ contains
         to%status(c) = before%status(nearest)
         to%hint(:, c) = before%hint(:, nearest)
         to%slip_path(c) = before%slip_path(nearest)
+        to%slip_speed(c) = before%slip_speed(nearest)
         new%start%held_offset(c) = old%start%held_offset(nearest)
         if (to%status(c) == status_gap) return
         stress = 0.0_wp
@@ -184,6 +185,7 @@ contains
         to%hint(:, c) = from%hint(:, b)
         to%place(c) = from%place(b)
         to%slip_path(c) = from%slip_path(b)
+        to%slip_speed(c) = from%slip_speed(b)
         to%lambda(:, c) = from%lambda(:, b)
       end associate
     end do

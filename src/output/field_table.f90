@@ -9,7 +9,8 @@ module dd3_output_field_table
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_output_forming_fields, only : fill_contact_gap, fill_contact_pressure, &
-      fill_contact_tool, fill_draw_in, fill_slip_path, fill_thickness, fill_thinning
+      fill_contact_tool, fill_draw_in, fill_slip_path, fill_slip_speed, fill_thickness, &
+      fill_thinning
   implicit none
   private
   public :: field_t, field_table, common_fields, fill_internal_variable, at_nodes_and_cells, &
@@ -123,6 +124,9 @@ contains
       row("slip_path", at_nodes, 1, "mm", &
           "path of the node on the tools while it slips, since the start of the job", &
           fill_slip_path), &
+      row("slip_speed", at_nodes, 1, "mm/s", &
+          "speed of sliding on the tools in the last increment; 0 in phases without a time", &
+          fill_slip_speed), &
       row("contact_tool", at_nodes, 1, "", &
           "number of the tool in contact, in the order of the input; 0 for none", &
           fill_contact_tool, whole=.true.)]

@@ -15,7 +15,8 @@ module dd3_output_forming_fields
   private
   public :: evaluate_strains
   public :: fill_thickness, fill_thinning, fill_draw_in
-  public :: fill_contact_pressure, fill_contact_gap, fill_slip_path, fill_contact_tool
+  public :: fill_contact_pressure, fill_contact_gap, fill_slip_path, fill_slip_speed, &
+      fill_contact_tool
 
   !> Lower face, middle and upper face of the sheet.
   real(wp), parameter :: height(3) = [0.0_wp, 0.5_wp, 1.0_wp]
@@ -99,6 +100,19 @@ contains
     end associate
     call sum_over_ranks(size(value), value)
   end subroutine fill_slip_path
+
+  !> Evaluate the speed of sliding.
+  subroutine fill_slip_speed(model, state, value)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(out) :: value(:, :)
+
+    value = 0.0_wp
+    associate (n => model%n_contact_node)
+      if (n > 0) value(1, model%contact_node(:n)) = state%contact%slip_speed(:n)
+    end associate
+    call sum_over_ranks(size(value), value)
+  end subroutine fill_slip_speed
 
   !> Evaluate the number of the tool in contact.
   subroutine fill_contact_tool(model, state, value)

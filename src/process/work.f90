@@ -72,11 +72,14 @@ contains
 
     type(surface_point_t) :: point
     real(wp) :: force(3), tool_motion(3), normal(3), slip(3), advance, work(2)
+    real(wp) :: duration
     integer :: c, tool
 
     work = 0.0_wp
     if (this_rank() == 0) work = [old%work%tools, old%work%friction]
     new%contact%slip_path = old%contact%slip_path
+    new%contact%slip_speed = 0.0_wp
+    duration = new%time - old%time
     do c = 1, model%n_contact
       tool = contact%tool(c)
       if (tool == 0) cycle
@@ -97,6 +100,7 @@ contains
       work(2) = work(2) + dot_product(force, slip)
       if (new%contact%status(c) == status_slip .and. old%contact%status(c) /= status_gap) then
         new%contact%slip_path(c) = new%contact%slip_path(c) + norm2(slip)
+        if (duration > 0.0_wp) new%contact%slip_speed(c) = norm2(slip)/duration
       end if
     end do
     call sum_over_ranks(2, work)

@@ -24,6 +24,8 @@ module dd3_report_phase_warnings
   use dd3_model_tolerances, only : tangential
   use dd3_process_phase_end, only : phase_is_over, until_met, until_tolerance, until_value
   use dd3_process_phase_start, only : gap_of_tool
+  use dd3_report_heated_sheet, only : heat_warning
+  use dd3_report_limits_reached, only : limits_note
   use dd3_report_necked_sheet, only : necking_warning
   use dd3_report_refinement_warnings, only : add_refinement_warnings
   use dd3_report_tool_warnings, only : add_tool_warnings
@@ -92,6 +94,8 @@ contains
     end if
     if (.not. ended .or. state%phase == size(model%phase)) then
       call notes%add_new("W123", necking_warning(model, state))
+      call notes%add_new("W128", heat_warning(model, state))
+      call notes%add_new("N111", limits_note(model, state))
     end if
     call add_tool_warnings(model, state, ended, adaptive, notes)
     call add_refinement_warnings(model, state, adaptive, notes)

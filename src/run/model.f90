@@ -32,6 +32,7 @@ module dd3_run_model
   use dd3_report_tool_depth, only : observe_tools
   use dd3_report_attempt_report, only : failure_message, status_row
   use dd3_report_refinement_warnings, only : late_warning
+  use dd3_report_limits_reached, only : has_limits, largest_limits, limit_warnings, limits_t
   use dd3_report_phase_warnings, only : end_notes, start_notes
   use dd3_run_adaptivity, only : adaptivity_t, most_returns, new_adaptivity
   use dd3_run_phase_closing, only : close_phase
@@ -67,6 +68,8 @@ module dd3_run_model
     type(run_summary_t) :: summary
     type(thread_choice_t) :: threads
     type(adaptivity_t) :: adaptivity
+    !> Largest damage and ratio to the forming limit in the committed state.
+    type(limits_t) :: limits
     type(solver_options_t) :: options
     !> Whether the log has told of a perturbed pivot.
     logical :: told_perturbed = .false.
@@ -175,6 +178,7 @@ contains
       call run%records%open(model, start%directory, run%committed, error)
     end if
     run%trial = run%committed
+    run%limits = largest_limits(model, run%committed)
   end subroutine open_records
 
   !> Run one phase to its end.
@@ -213,6 +217,7 @@ contains
         if (committed%increment > done) then
           call observe_pins(case, model, committed, run%summary%phase(number)%closing%pin)
           call write_increment(run, model, next_output, log, late)
+          call tell_limits(run, model, log)
           call keep_first(error, late)
         end if
         if (allocated(error)) exit
@@ -330,6 +335,22 @@ contains
       name = "tool '"//trim(model%tool(findloc(model%tool_row, row, 1))%name)//"'"
     end if
   end function row_name
+
+  !> Warn of a limit of the sheet that is reached for the first time.
+  subroutine tell_limits(run, model, log)
+    type(run_t), intent(inout) :: run
+    type(model_t), intent(in) :: model
+    type(log_t), intent(inout) :: log
+
+    type(message_list_t) :: notes
+    type(limits_t) :: now
+
+    if (.not. has_limits(model)) return
+    now = largest_limits(model, run%committed)
+    call limit_warnings(model, run%committed, run%limits, now, notes)
+    call tell_all(log, notes)
+    run%limits = now
+  end subroutine tell_limits
 
   !> Log notes and warnings.
   subroutine tell_all(log, notes)

@@ -8,8 +8,8 @@ module dd3_run_file_material
   use dd3_input_case, only : case_t, law_spec_t, point_spec_t
   use dd3_input_table, only : find_key
   use dd3_laws_choice, only : choose_law
-  use dd3_material_check, only : describe_laws, law_backstress, law_hardening, law_modulus, &
-      law_rate, law_temperature, law_yield
+  use dd3_material_check, only : describe_laws, law_backstress, law_fracture, law_hardening, &
+      law_modulus, law_rate, law_temperature, law_yield
   use dd3_material_description, only : description_t, law_choice_t
   use dd3_model_model, only : model_t
   use dd3_run_file_input, only : add_location
@@ -46,6 +46,7 @@ contains
         call add_optional(json, "modulus", law_modulus, material%modulus)
         call add_optional(json, "rate", law_rate, material%rate)
         call add_optional(json, "temperature", law_temperature, material%temperature)
+        call add_optional(json, "fracture", law_fracture, material%fracture)
         call json%add("rolling_direction", model%axes(:, 1, m))
         call json%add("normal_direction", model%axes(:, 3, m))
         n = 0

@@ -61,8 +61,12 @@ contains
       call material%laws%rate%law%describe(description)
       text = text//source_line(description)
     end if
-    if (.not. allocated(material%laws%temperature%law)) return
-    call material%laws%temperature%law%describe(description)
+    if (allocated(material%laws%temperature%law)) then
+      call material%laws%temperature%law%describe(description)
+      text = text//source_line(description)
+    end if
+    if (.not. allocated(material%laws%fracture%law)) return
+    call material%laws%fracture%law%describe(description)
     text = text//source_line(description)
   end function law_sources
 

@@ -6,7 +6,7 @@ module dd3_system_compliant_contact
   use dd3_base_threads, only : least_nodes, threads_for
   use dd3_contact_compliant, only : compliant_operator, fraction_of, layer_t, rotated
   use dd3_contact_friction, only : friction_limit_t, friction_t, sliding_t
-  use dd3_contact_operator, only : status_gap, status_slip
+  use dd3_contact_operator, only : status_gap, status_slip, tangential_length
   use dd3_linalg_matrix, only : block_matrix_t
   use dd3_model_contact_layer, only : layer_at
   use dd3_sheet_surface_point, only : surface_point_t
@@ -209,7 +209,7 @@ contains
       change = (1.0_wp - by_normal)/crossing%weight*change
       if (status == status_slip) then
         normal_force = -dot_product(n, self%force(:, c))
-        limit = friction%limit(normal_force, sliding)
+        limit = friction%limit(normal_force, sliding, tangential_length(n, slip))
         change = change + (1.0_wp - by_normal*limit%slope*normal_force &
             /max(limit%value, tiny(1.0_wp)))/crossing%weight*force
       end if

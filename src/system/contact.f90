@@ -2,10 +2,12 @@
 !> Contact of the points of this rank, by the formulation of the phase: in a trial state (corrector)
 !> or at the committed state with its stored status (predictor).
 module dd3_system_contact
+  use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : any_rank
   use dd3_contact_operator, only : round_off, status_gap
   use dd3_model_contact_layer, only : contact_penalty
   use dd3_model_contact_points, only : contact_areas
+  use dd3_model_contact_strain, only : strains_below
   use dd3_model_model, only : model_t
   use dd3_model_outward_normals, only : outward_normals
   use dd3_model_state, only : state_t
@@ -49,9 +51,28 @@ contains
 
     call choose(system%formulation, model%phase(trial%phase)%mixed)
     system%contact%search_distance = model%phase(trial%phase)%search_distance
+    if (any_friction(model, .true.)) then
+      system%contact%sliding%speed = 0.0_wp
+      system%contact%sliding%per_slip = 1.0_wp/max(trial%time - committed%time, tiny(1.0_wp))
+    end if
     call system%formulation%evaluate(system%contact, model, committed, trial, &
         system%problem%point)
   end subroutine evaluate_contact
+
+  !> Whether the coefficient of friction of any tool is not constant, or depends on the speed.
+  pure logical function any_friction(model, by_speed)
+    type(model_t), intent(in) :: model
+    logical, intent(in) :: by_speed
+
+    integer :: t
+
+    any_friction = .false.
+    do t = 1, model%n_tool
+      associate (friction => model%tool(t)%friction)
+        any_friction = any_friction .or. merge(friction%needs_time(), friction%varies(), by_speed)
+      end associate
+    end do
+  end function any_friction
 
   !> Evaluate the contact of the predictor: the committed state with its stored status.
   subroutine predictor_contact(system, model, committed)
@@ -65,8 +86,11 @@ contains
     call choose(system%formulation, model%phase(committed%phase)%mixed)
     associate (contact => system%contact, phase => model%phase(committed%phase))
       contact%outward = outward_normals(model, committed%x)
-      if (any([(model%tool(tool)%friction%varies(), tool=1, model%n_tool)])) then
+      if (any_friction(model, .false.)) then
         contact%sliding%area = contact_areas(model, committed%x)
+        contact%sliding%strain = strains_below(model, committed)
+        contact%sliding%speed = committed%contact%slip_speed
+        contact%sliding%per_slip = 0.0_wp
       end if
       contact%turn_limited = .false.
       contact%search_distance = model%tolerance%tool_search

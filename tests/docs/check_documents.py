@@ -33,7 +33,7 @@ LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
 FENCE = re.compile(r"^```\w*\n(.*?)^```", re.DOTALL | re.MULTILINE)
 GATHERED = {"yield": "yield_criteria.md", "hardening": "hardening_laws.md", "backstress": "hardening_laws.md",
             "modulus": "hardening_laws.md", "rate": "hardening_laws.md",
-            "temperature": "hardening_laws.md"}
+            "temperature": "hardening_laws.md", "fracture": "forming_limits.md"}
 LAW = re.compile(r"^## `(\w+) = law|^\| `(\w+)` \|", re.MULTILINE)
 PARAMETER = re.compile(r"^  (\S+) = (a \w.*?) \((\w.*)\)$", re.MULTILINE)
 BOUND = re.compile(r"[<>]=? ")

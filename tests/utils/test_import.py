@@ -213,6 +213,21 @@ def test_rates():
         assert any("C = " in str(item) and "VP = " in str(item) for item in found.left_out) != bool(rate)
 
 
+def test_heating():
+    """Check *MAT_015 in two systems of units: the flow stress by the rate and by the heat of plastic work, without
+    CP or with another form of the rate without these."""
+    flow = 0.3, 0.5, 0.4, 0.02, 1.1, 1500.0, 20.0, 1e-6
+    found, deck = imported(with_material("*MAT_015", row(1, "7.8E-6", "", 210.0, 0.3, "", 1.0), row(*flow),
+                                         row(460.0, "", "", "", 0.05)))
+    assert "  hardening = ludwik Y0=300 K=500 n=0.4\n  rate = johnson_cook C=0.02 reference=0.001\n" \
+        "  temperature = johnson_cook Tr=20 Tm=1500 m=1.1\n  initial_temperature = 20\n" in deck
+    assert "  heat_capacity = 4.6e+08\n" in deck and "  heat_fraction = 1\n" in deck and "  duration = " in deck
+    assert any("D1 = 0.05" in str(item) for item in found.left_out)
+    found, deck = imported(with_material("*MAT_JOHNSON_COOK", row(1, "7.8E-9", "", "2.1E5", 0.3, "", 1.0, 2.0),
+                                         row(300.0, 500.0, *flow[2:7], 1e-3), row("")))
+    assert not found.law.heating and not found.law.rate and any("RATEOP = 2" in note for note in found.notes)
+
+
 def test_further_cards():
     """Check tables, parts that follow another, draw-beads, and what is left out or refused for its axes or places."""
     text = with_material("*MAT_024", row(1, "7.8E-9", "2.1E5", 0.3), row("", "", 50), "*DEFINE_TABLE", row(50), row(0.1),

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draw the pictures of docs/laws: one for each yield criterion, hardening law, back-stress law, the chord modulus and
-laws of the strain rate.
+"""Draw the pictures of docs/laws: one for each yield criterion, hardening law, back-stress law, the chord modulus,
+laws of the strain rate and of fracture.
 
     utils/dev/law_pictures.py --program build/release/dd3imp
     utils/dev/law_pictures.py hill48 swift --program build/release/dd3imp --output /tmp
@@ -10,7 +10,8 @@ Materials and paths are those of input_files/laws/<law>.dat; all values come fro
 yield surface with its normals, r-values and yield stresses by angle; the broken line is the surface of von Mises.
 Hardening laws: tension as true and as nominal stress, with a dot at the largest force. Back-stresses and laws that
 depend on the strain path: reversals and changes of the path. Chord modulus: tension with unloadings. Strain rate:
-tension at four rates, and with jumps of the rate and relaxation.
+tension at four rates, and with jumps of the rate and relaxation. Fracture: damage, and strains to fracture in plane
+stress.
 """
 
 import argparse
@@ -241,6 +242,24 @@ def rates(program, law, figure):
         legend(part, loc="lower right")
 
 
+def fracture(program, law, figure):
+    """Draw the damage on several paths, and the strain to fracture in plane stress over the triaxiality."""
+    points = deck_run(program, law)
+    axes, names = figure.subplots(1, 2), labels(law)
+    for name, rows in points.items():
+        axes[0].plot(*columns(rows, "eqps", "fracture_damage"), label=names[name])
+    ratios = np.radians(np.arange(-45, 46, 1))
+    path, materials = pp.names_in(str(DECKS / f"{law}.dat"), program)
+    found = pp.run(program, pp.deck(path, materials, [], ratios, 0.1))[1]
+    ends = [rows[-1] for name, rows in found.items() if name.startswith("p0_")]
+    strain, damage, first, second = columns(ends, "eqps", "fracture_damage", "s11", "s22")
+    triaxiality = (first + second) / 3 / np.sqrt(first ** 2 - first * second + second ** 2)
+    axes[1].plot(triaxiality, strain / damage, color="C0")
+    axes[0].set(xlabel="equivalent plastic strain", ylabel="damage", ylim=(0, 1.1))
+    axes[1].set(xlabel="triaxiality", ylabel="plastic strain to fracture", ylim=(0, None))
+    legend(axes[0])
+
+
 def columns(rows, *keys):
     """Return columns of rows."""
     return [np.array([row[key] for row in rows]) for key in keys]
@@ -258,6 +277,7 @@ PICTURES = {
     "table": (tension, {"points_of": TABLE}), "teodosiu_hu": (teodosiu_hu, {}),
     "yoshida_uemori": (yoshida_uemori, {}), "chord": (chord, {}),
     **{law: (rates, {}) for law in ("cowper_symonds", "johnson_cook", "power")}, "prager": (prager, {}),
+    "hosford_coulomb": (fracture, {}),
     "lemaitre_chaboche": (lemaitre_chaboche, {}),
 }
 

@@ -11,7 +11,7 @@ module friction_examples
 contains
 
   !> Add a law by its name; none for an empty one.
-  subroutine add_example(friction, name)
+  recursive subroutine add_example(friction, name)
     type(friction_t), intent(inout) :: friction
     character(len=*), intent(in) :: name
 
@@ -26,6 +26,18 @@ contains
     case ("table")
       call friction%add_law(name, [law_value_t(pair_name, 1.2_wp, 1.0_wp), &
           law_value_t(pair_name, 1.0_wp, 20.0_wp), law_value_t(pair_name, 0.7_wp, 150.0_wp)])
+    case ("stribeck")
+      call friction%add_law(name, [law_value_t("v0", 30.0_wp), law_value_t("r", 0.4_wp), &
+          law_value_t("n", 1.5_wp)])
+    case ("speed_table")
+      call friction%add_law(name, [law_value_t(pair_name, 1.0_wp, 5.0_wp), &
+          law_value_t(pair_name, 0.8_wp, 40.0_wp), law_value_t(pair_name, 0.9_wp, 400.0_wp)])
+    case ("strain_table")
+      call friction%add_law(name, [law_value_t(pair_name, 1.0_wp, 0.0_wp), &
+          law_value_t(pair_name, 1.3_wp, 0.2_wp)])
+    case ("speed")
+      call add_example(friction, "table")
+      call add_example(friction, "stribeck")
     case default
       if (len(name) > 0) error stop "no such example"
     end select

@@ -54,6 +54,7 @@ class Law:
     backstresses: list[str] = field(default_factory=list)
     modulus: str = ""
     rate: str = ""
+    heating: list[str] = field(default_factory=list)
     density: float = 0.0
     notes: list[str] = field(default_factory=list)
 

@@ -27,11 +27,13 @@ from dd3.errors import Problem
 NAMES = {"RIGID": 20, "PIECEWISE_LINEAR_PLASTICITY": 24, "3-PARAMETER_BARLAT": 36, "HILL_3R": 122,
          "TRANSVERSELY_ANISOTROPIC_ELASTIC_PLASTIC": 37, "BARLAT_YLD2000": 133, "PLASTIC_KINEMATIC": 3,
          "POWER_LAW_PLASTICITY": 18, "KINEMATIC_HARDENING_TRANSVERSELY_ANISOTROPIC": 125,
-         "KINEMATIC_HARDENING_BARLAT89": 226, "SIMPLIFIED_JOHNSON_COOK": 98}
-READ = "003, 018, 024, 036, 037, 098, 122, 125, 133, 226"
+         "KINEMATIC_HARDENING_BARLAT89": 226, "SIMPLIFIED_JOHNSON_COOK": 98, "JOHNSON_COOK": 15}
+READ = "003, 015, 018, 024, 036, 037, 098, 122, 125, 133, 226"
 # Units by Young's modulus of a metal: its range, the factors on lengths and on stresses, mm and MPa here.
 UNITS = {"mm MPa": (3e4, 4.5e5, 1.0, 1.0), "mm GPa": (30.0, 450.0, 1.0, 1e3), "m Pa": (3e10, 4.5e11, 1e3, 1e-6)}
 ROWS = {3: ("MID RO E PR SIGY ETAN BETA", "SRC SRP FS VP"),
+        15: ("MID RO G E PR DTF VP RATEOP", "A B N C M TM TR EPSO", "CP PC SPALL IT D1 D2 D3 D4",
+             "D5 C2P EROD EFMIN NUMINT"),
         18: ("MID RO E PR K N SRC SRP", "SIGY EPSF VP"),
         20: ("MID RO E PR N COUPLE M ALIAS", "CMO CON1 CON2 SPCNID XSPC YSPC ZSPC", "LCO A2 A3 V1 V2 V3 BNDLCO"),
         24: ("MID RO E PR SIGY ETAN FAIL TDEL", "C P LCSS LCSR VP unused RFILTF",
@@ -90,7 +92,7 @@ def law_of(deck: Deck, card: Card, units: Units, axes: np.ndarray) -> Law:
     """Return the laws of a material; `axes` are the first edge and the normal of the blank's first element."""
     number = number_of(card)
     readers: dict[int, Callable[[Deck, Card, Units, Law], int]] = {
-        3: bilinear, 18: power_law, 24: piecewise, 36: barlat_lian, 37: transverse, 98: johnson_cook, 122: hill,
+        3: bilinear, 15: heated_johnson_cook, 18: power_law, 24: piecewise, 36: barlat_lian, 37: transverse, 98: johnson_cook, 122: hill,
         125: two_surfaces, 133: yld2000, 226: two_surfaces_barlat}
     if number not in readers:
         raise Problem(f"{card.place}: error: the material {card.keyword} of the blank is not read; expected *MAT_ "
@@ -188,14 +190,39 @@ def piecewise(deck: Deck, card: Card, units: Units, law: Law) -> int:
 def johnson_cook(deck: Deck, card: Card, units: Units, law: Law) -> int:
     """*MAT_098: A + B p^n, with VP = 1 times 1 + C ln(rate/EPSO)."""
     row, second = row_of(card, 0), row_of(card, 1)
+    take_johnson_cook(row, second, units, law)
+    second.leave(FAILURE, "PSFAIL")
+    second.leave("the flow stress has no upper limit here", "SIGMAX SIGSAT")
+    return 0
+
+
+def take_johnson_cook(row: Row, second: Row, units: Units, law: Law) -> None:
+    """Take the hardening and the factor of the rate of *MAT_015 and 098."""
     start, factor = positive(second.number("A"), "A", second.place), positive(second.number("B"), "B", second.place)
     exponent = positive(second.number("N"), "N", second.place)
     law.hardening = f"ludwik Y0={start * units.stress:.8g} K={factor * units.stress:.8g} n={exponent:.8g}"
     if row.number("VP") == 1 and second.peek("C") > 0 and second.peek("EPSO") > 0:
         law.rate = f"johnson_cook C={second.number('C'):.8g} reference={second.number('EPSO') / units.time:.8g}"
     second.leave(TOTAL, "C EPSO")
-    second.leave(FAILURE, "PSFAIL")
-    second.leave("the flow stress has no upper limit here", "SIGMAX SIGSAT")
+
+
+def heated_johnson_cook(deck: Deck, card: Card, units: Units, law: Law) -> int:
+    """*MAT_015: that of *MAT_098 and, with CP and RO, the factor 1 - ((T - TR)/(TM - TR))^M of adiabatic heating."""
+    row, second, third, fourth = (row_of(card, i) for i in range(4))
+    take_johnson_cook(row, second, units, law)
+    if row.peek("RATEOP"):
+        law.rate = ""
+        law.notes.append(f"{row.place}: RATEOP = {row.number('RATEOP'):g}: {RATES}")
+    heat, exponent = third.number("CP"), second.number("M")
+    melting, room = second.numbers("TM TR")
+    if heat > 0 and law.density and exponent > 0 and melting > room:
+        law.heating = [f"temperature = johnson_cook Tr={room:.8g} Tm={melting:.8g} m={exponent:.8g}",
+                       f"initial_temperature = {room:.8g}",
+                       f"heat_capacity = {heat * units.length * units.acceleration:.8g}", "heat_fraction = 1"]
+    row.leave("the modulus is E", "G")
+    row.leave(FAILURE, "DTF")
+    third.leave(FAILURE, "PC SPALL IT D1 D2 D3 D4")
+    fourth.leave(FAILURE, "D5 C2P EROD EFMIN NUMINT")
     return 0
 
 
