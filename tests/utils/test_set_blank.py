@@ -52,6 +52,8 @@ def test_inclined(tmp_path, program):
     deck = (tmp_path / "tools" / "draw.dat").read_text()
     assert 'file = "blank.inp"' in deck
     assert not any(text in deck for text in ("*PHASE gravity", "*PHASE close", "*BLANK"))
+    touch, clamp = deck.split("*PHASE touch")[1].split("*PHASE clamp")
+    assert "displace = middle x 0" in touch and "free = middle x y" in clamp
     assert "time       about" in said and "error" not in said, said
     nodes = np.array(list(read_inp(tmp_path / "tools" / "blank.inp", None).nodes.values()))
     for tool, own in zip(("die", "holder"), np.split(nodes, 2)):

@@ -106,6 +106,15 @@ def test_tangent():
     assert np.allclose(balance.tangent(places[mesh.triangles]) @ step.ravel(), expected, atol=1e-5 * abs(expected).max())
 
 
+def test_slivers():
+    """Check that slivers on both sides of an edge, whose far corners become one node, leave no side with more than two
+    triangles."""
+    nodes = np.array([[0, 0, 0], [4, 0, 0], [2, 0.02, 0], [2, -0.02, 0], [2, 3, 0], [2, -3, 0]], float)
+    triangles = np.array([[0, 1, 2], [0, 3, 1], [0, 2, 4], [2, 1, 4], [0, 5, 3], [3, 5, 1]])
+    mesh = prepared(HERE, Triangles(nodes, triangles), [], 0.1)
+    assert len(mesh.nodes) == 5 and len(mesh.triangles) == 4 and len(rims(HERE, mesh.triangles)[0]) == 4
+
+
 def test_turned_alike():
     """Check that triangles turn as their neighbours, of two pieces too, and that nothing is said of a Möbius strip."""
     mesh = grid(lambda u, v: (u, v, u * v), 9, 7)

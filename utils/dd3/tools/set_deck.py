@@ -84,9 +84,10 @@ CONTACT = {"punch": "z_max", "die": "z_min", "holder": "z_max", "pad": "z_min"}
 # Friction holds the sheet sideways, once the holder or a pad is on it.
 SUPPORT = """# The middle of the blank does not move sideways, as it lies freely on the die at first.
 *SET middle
-  near = {middle} 0
+  near = {middle}
 
 """
+ASIDE = "  displace = middle x 0\n  displace = middle y 0\n"
 FREE = "  free = middle x y\n"
 # Without holder and pad.
 HELD = """*BOUNDARY middle
@@ -113,10 +114,7 @@ GRAVITY = """# The blank is laid on the die by its weight.
   hold = punch
   hold = holder
   gravity = 0 0 -{earth:g}
-  displace = middle x 0
-  displace = middle y 0
-
-"""
+""" + ASIDE + "\n"
 BLANK, MESH = "blank.txt", "blank.inp"  # outline of the blank; its mesh, if it does not lie level
 CUT = """
 *TRIM blank
@@ -130,10 +128,7 @@ CLOSING = """# The holder bends the blank onto the die.
   hold = die
   hold = punch
   move = holder 0 0 -{closing:.6g}
-  displace = middle x 0
-  displace = middle y 0
-
-"""
+""" + ASIDE + "\n"
 CLAMP = """*PHASE clamp
   control = load
   trial = 1.0
@@ -141,6 +136,16 @@ CLAMP = """*PHASE clamp
   hold = punch
 {presses}{free}
 """
+# A holder that moves down onto an incline slides on the blank, and the blank on the die.
+TOUCH = """# The holder touches the blank.
+*PHASE touch
+  control = load
+  trial = 1.0
+  hold = die
+  hold = punch
+  press = holder 0 0 -{force:.3g}
+""" + ASIDE + "\n"
+TOUCHING = 0.1  # its force over that of the holder
 
 
 def deck(options: ToolSettings, tools: ToolSet, beads: Beads, command: str) -> str:
@@ -152,11 +157,13 @@ def deck(options: ToolSettings, tools: ToolSet, beads: Beads, command: str) -> s
               for name, force in pressed.items()]
     forces += [f"  bead = {beads.force:.3g}            # N/mm, restraint of the draw-beads\n"] if beads.lines else []
     presses = [f"  press = {name} 0 0 {'-' if name == 'holder' else ''}${{{name}}}\n" for name in pressed]
-    support = SUPPORT.format(middle=pair((low + high) / 2)) if tools.closing or not pressed else ""
-    support += "" if pressed else HELD
-    closing = CLOSING.format(closing=tools.closing - SHORT * options.thickness) if tools.closing else ""
-    weighs = tools.closing > 0 and set_material.density_of(options.material) is not None
     inclined = tools.blank.inclined
+    middle = pair(tools.blank.placed(np.array([(low + high) / 2]))[0])
+    support = SUPPORT.format(middle=middle) if tools.closing or inclined or not pressed else ""
+    support += "" if pressed else HELD
+    closing = (TOUCH.format(force=TOUCHING * pressed["holder"]) if inclined else
+               CLOSING.format(closing=tools.closing - SHORT * options.thickness) if tools.closing else "")
+    weighs = tools.closing > 0 and set_material.density_of(options.material) is not None
     sheet = (INCLINED_SHEET.format(file=MESH, length=length) if inclined
              else LEVEL_SHEET.format(origin=pair(low), size=pair(high - low)))
     return DECK.format(part=options.source.stem, command=command,
@@ -170,7 +177,7 @@ def deck(options: ToolSettings, tools: ToolSet, beads: Beads, command: str) -> s
                        light="  gravity = 0 0 0\n" if weighs else "", sheet=sheet,
                        tools="".join(TOOL.format(name=name, contact=CONTACT[name]) for name in tools.surfaces),
                        support=support, closing=closing,
-                       clamp=CLAMP.format(presses="".join(presses), free=FREE if tools.closing else "")
+                       clamp=CLAMP.format(presses="".join(presses), free=FREE if closing else "")
                        if pressed else "")
 
 
