@@ -96,16 +96,17 @@ def window_of(cases: Sequence[Case], varied: Sequence[tuple[str, list[str]]], wa
                      else value_of(case.folder, "thinning", "max")[0] / thinning)
             holder, wall = wave_heights(read_job(case.folder))
             table[:, i] = split, max(holder / waves, wall / walls if walls else 0.0)
-    split, high = (values.reshape(len(x), len(y))[np.argsort(x)][:, np.argsort(y)] for values in table)
-    return Window((first, second), np.sort(x), np.sort(y), split, high)
+    ratios, heights = (values.reshape(len(x), len(y))[np.argsort(x)][:, np.argsort(y)] for values in table)
+    return Window((first, second), np.sort(x), np.sort(y), ratios, heights)
 
 
 def draw(axes: Axes, found: Window) -> None:
     """Draw runs in the colours of what they show, and the borders of splits and wrinkles."""
     answers = found.answers()
     for i, j in np.ndindex(answers.shape):
-        style = {"marker": "o", "color": COLOURS[answers[i, j]]} if answers[i, j] else {"marker": "x", "color": "0.5"}
-        axes.plot(found.x[i], found.y[j], linestyle="", markersize=7, label=answers[i, j] or "no end", **style)
+        answer = str(answers[i, j])
+        axes.plot(found.x[i], found.y[j], marker="o" if answer else "x", color=COLOURS.get(answer, "0.5"), linestyle="",
+                  markersize=7, label=answer or "no end")
     for values, name in ((found.split, SPLITS), (found.waves, WRINKLES)):
         if (values > 1).any() and (values < 1).any():
             axes.contour(found.x, found.y, values.T, levels=[1.0], colors=COLOURS[name], linewidths=1.3)

@@ -109,7 +109,8 @@ class Sample:
         runs = scatter.runs or len(coils)
         if runs < 2:
             raise Problem(f"{scatter.path}: runs is missing; expected a number of runs from 2 on")
-        self.values = (latin_hypercube(self.distributions, runs, scatter.correlations, scatter.seed)
+        ranks = None if scatter.correlations is None else np.array(scatter.correlations, float)
+        self.values = (latin_hypercube(self.distributions, runs, ranks, scatter.seed)
                        if self.distributions else np.zeros((runs, 0)))
         self.coils = [coils[i] for i in coil_rows(len(coils), runs, scatter.seed, alone=not self.distributions)]
         self.independent = not coils and scatter.correlations is None
