@@ -90,7 +90,8 @@ def test_gravity_on_three_locators(program, tmp_path):
     text += support("locator", "b1", [0, 5, 0], [0, 1, 0], "pin = true")
     text += support("locator", "b2", [200, 5, 0], [0, 1, 0], "pin = true")
     text += support("locator", "c1", [0, 5, 0], [1, 0, 0], "pin = true")
-    text += f'[[point]]\nname = "m"\nat = [100, 5, 0]\ntolerance = 0.05\n[gravity]\nacceleration = [0, 0, -9810]\ndensity = {DENSITY}\n'
+    text += '[[point]]\nname = "m"\nat = [100, 5, 0]\ntolerance = 0.05\n'
+    text += f'[gravity]\nacceleration = [0, 0, -9810]\ndensity = {DENSITY}\n'
     tables, _ = computed(program, tmp_path, FLAT, text)
     load = DENSITY * 9810 * WIDTH  # N/mm
     sag = 5 * load * 200**4 / (384 * YOUNG * INERTIA)
@@ -156,7 +157,7 @@ def test_rests_and_a_clamp_with_force(program, tmp_path, direction):
 def test_rest_that_is_reached_or_not(program, tmp_path, force):
     """An arc of the curvature k, pressed by a force at its end towards a rest: it reaches the rest at
     P = 3 E I k/(2 L), above which the rest carries the difference."""
-    text = support("locator", "a1", [0.5, 0.5, 0], [0, 0, 1], ONE) + support("locator", "a2", [0.5, 9.5, 0], [0, 0, 1], ONE)
+    text = "".join(support("locator", name, [0.5, y, 0], [0, 0, 1], ONE) for name, y in (("a1", 0.5), ("a2", 9.5)))
     text += support("locator", "b1", [0, 5, 0], [0, 1, 0], "pin = true")
     text += support("clamp", "r1", [49.5, 5, 0], [0, 0, 1], ONE)
     text += support("clamp", "d1", [49.5, 5, 0], [0, 0, -1], f"order = 2\nforce = {force}")

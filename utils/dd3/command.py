@@ -43,6 +43,8 @@ COMMANDS = {
         "combination": ("dd3.study.vary:run_combination", "run one of these combinations in the folder of the study"),
     }),
     "scatter": ("dd3.scatter.command", "run a sample of scattered inputs: bands, probability of failure, indices"),
+    "window": ("dd3.window", "draw where splits and wrinkles begin over two parameters"),
+    "press": ("dd3.press", "compare force and work of the tools with a press; its stroke as a table"),
     "example": ("dd3.example", "copy an example, or list the examples"),
     "completion": ("dd3.completion", "print a script that completes commands and options in a shell"),
     "info": ("dd3.info", "print what is installed: versions, program, examples, Python packages"),

@@ -3,12 +3,16 @@
 
     dd3 scatter hat.toml --cores 2
 
-The file names the input file, its scattered parameters (*PARAMETER), the results (as --result of `dd3 study`), and
-limits of results beyond which a part fails:
+The file names the input file, its scattered parameters (*PARAMETER), the results, and limits of results beyond which a
+part fails; docs/scatter.md explains its keys:
 
     deck = "hat.dat"
     runs = 30
-    results = ["punch_fz:max", "thinning:max"]
+    results = ["punch_fz:max", "thinning:max", "springback@rim", "forming_limit"]
+    bands = ["thinning along y=0"]
+    coils = "coils.csv"
+    [places]
+    rim = [95, 0]
     [inputs.friction]
     kind = "truncated"          # or normal, lognormal, uniform
     mean = 0.14
@@ -18,109 +22,190 @@ limits of results beyond which a part fails:
     [limits]
     "thinning:max" = 0.2
 
-results.csv is written into --work. After an interruption the same command continues; runs that stopped are told.
+results.csv, bands.csv and pictures of the bands are written into --work. After an interruption the same command
+continues; runs that were refused or stopped are told and left out.
 """
 
 import argparse
 import os
 import tomllib
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
 from dd3.command import new_parser
 from dd3.errors import Problem
+from dd3.plot.figures import new_figure, save
 from dd3.programs import add_program, find_program, made_folder
-from dd3.scatter.sample import distribution, latin_hypercube
+from dd3.scatter.results import FORMING_LIMIT, draw, profiles, scalar
+from dd3.scatter.sample import coil_rows, distribution, latin_hypercube, read_coils
 from dd3.scatter.statistics import bands, failure
 from dd3.scatter.surrogate import fit
-from dd3.study.vary import Case, result, run_all, value_of, write_table
-
-KEYS = {"deck", "runs", "seed", "inputs", "results", "limits", "correlations"}
+from dd3.study.vary import REFUSED, Case, attempt, folder_name, run_all, write_table
 
 
-def read(path: Path) -> dict[str, Any]:
+@dataclass
+class Scatter:
+    """The description of a scatter: its file has a key for each member but `path`, of the same name."""
+
+    path: Path
+    deck: str
+    results: list[str]
+    runs: int = 0  # by default as many as there are coils
+    seed: int = 0
+    set: dict[str, Any] = field(default_factory=dict)
+    inputs: dict[str, dict[str, Any]] = field(default_factory=dict)
+    correlations: list[list[float]] | None = None
+    coils: str | None = None
+    limits: dict[str, float] = field(default_factory=dict)
+    places: dict[str, list[float]] = field(default_factory=dict)
+    bands: list[str] = field(default_factory=list)
+    mirror: list[str] = field(default_factory=list)
+
+
+KEYS = set(Scatter.__dataclass_fields__) - {"path"}
+
+
+def read(path: Path) -> Scatter:
     """Return the description of a scatter. Errors: not TOML; unknown or missing keys; limits of no result."""
     try:
         found = tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise Problem(f"{path}: {error}") from None
-    wrong, missing = sorted(set(found) - KEYS), sorted({"deck", "runs", "inputs", "results"} - set(found))
+    wrong, missing = sorted(set(found) - KEYS), sorted({"deck", "results"} - set(found))
     if wrong or missing:
         raise Problem(f"{path}: " + (f"no key '{wrong[0]}'" if wrong else f"{missing[0]} is missing")
                       + f"; there are {', '.join(sorted(KEYS))}")
-    if not isinstance(found["runs"], int) or found["runs"] < 2:
-        raise Problem(f"{path}: runs is a number of runs from 2 on, not {found['runs']}")
-    for name in found.get("limits", {}):
-        if name not in found["results"]:
+    scatter = Scatter(path, **found)
+    if not scatter.inputs and not scatter.coils:
+        raise Problem(f"{path}: inputs is missing; expected [inputs.NAME], coils, or both")
+    if "runs" in found and not (isinstance(scatter.runs, int) and scatter.runs >= 2):
+        raise Problem(f"{path}: runs is a number of runs from 2 on, not {scatter.runs}")
+    for name in scatter.limits:
+        if name not in scatter.results:
             raise Problem(f"{path}: the limit of '{name}' belongs to no result")
-    return found
+    for name, place in scatter.places.items():
+        if not isinstance(place, list) or len(place) != 2 or not all(isinstance(x, (int, float)) for x in place):
+            raise Problem(f"{path}: the place '{name}' is {place!r}; expected x and y on the blank, mm")
+    return scatter
 
 
-def cases_of(study: dict[str, Any], sample: np.ndarray, work: Path) -> list[Case]:
-    """Return a case for each row of a sample; its folder names its values, so that changed inputs are run anew."""
-    rows = [{name: f"{value:.8g}" for name, value in zip(study["inputs"], row)} for row in sample]
-    return [Case(row, work / "_".join(f"{name}={value}" for name, value in row.items())) for row in rows]
+class Sample:
+    """The values of all runs: those drawn from distributions, (runs, inputs), and the coil of each run."""
+
+    def __init__(self, scatter: Scatter) -> None:
+        try:
+            self.distributions = [distribution(**row) for row in scatter.inputs.values()]
+        except TypeError:
+            raise Problem(f"{scatter.path}: an input has kind, mean, deviation, low and high") from None
+        coils = read_coils(scatter.path.parent / scatter.coils) if scatter.coils else []
+        both = sorted(set(scatter.inputs) & set(coils[0] if coils else {}))
+        if both:
+            raise Problem(f"{scatter.path}: '{both[0]}' is an input and a column of {scatter.coils}; expected one")
+        runs = scatter.runs or len(coils)
+        if runs < 2:
+            raise Problem(f"{scatter.path}: runs is missing; expected a number of runs from 2 on")
+        ranks = None if scatter.correlations is None else np.array(scatter.correlations, float)
+        self.values = (latin_hypercube(self.distributions, runs, ranks, scatter.seed)
+                       if self.distributions else np.zeros((runs, 0)))
+        self.coils = [coils[i] for i in coil_rows(len(coils), runs, scatter.seed, alone=not self.distributions)]
+        self.independent = not coils and scatter.correlations is None
+
+    def cases(self, scatter: Scatter, work: Path) -> list[Case]:
+        """Return a case for each run; its folder names its values, so that changed inputs are run anew."""
+        settings = {name: str(value) for name, value in scatter.set.items()}
+        found: list[Case] = []
+        for i, row in enumerate(self.values):
+            values = {name: f"{value:.8g}" for name, value in zip(scatter.inputs, row)}
+            values |= self.coils[i] if self.coils else {}
+            folder = work / folder_name({**values, **settings})
+            if folder in [case.folder for case in found]:  # of coils with the same values
+                folder = folder.with_name(f"{folder.name}_{i}")
+            found.append(Case(values, folder, settings=settings))
+        return found
 
 
-def describe(study: dict[str, Any], sample: np.ndarray, distributions: list[Any], cases: list[Case]) -> list[str]:
+def describe(scatter: Scatter, sample: Sample, cases: list[Case]) -> list[str]:
     """Return the lines on each result: its scatter, the probability of failure, the indices of the inputs."""
     ended = np.array([case.results is not None for case in cases])
     table = np.array([case.results for case in cases if case.results is not None])
+    limits = {**{name: 1.0 for name in scatter.results if name == FORMING_LIMIT}, **scatter.limits}
     lines = []
-    for name, values in zip(study["results"], table.T):
+    for name, values in zip(scatter.results, table.T):
         found = bands(values[:, None])
         lines.append(f"{name}: mean {found.mean[0]:.5g}, standard deviation {found.deviation[0]:.3g}, quantiles "
                      "5 % 50 % 95 %: " + " ".join(f"{value:.5g}" for value in found.quantiles[:, 0]))
-        if name in study.get("limits", {}):
-            beyond = failure(values > study["limits"][name])
-            lines.append(f"  above {study['limits'][name]:g}: {beyond.failed} of {beyond.runs} runs that ended, "
+        if name in limits:
+            beyond = failure(values > limits[name])
+            lines.append(f"  above {limits[name]:g}: {beyond.failed} of {beyond.runs} runs that ended, "
                          f"probability {beyond.part:.3f} ({beyond.low:.3f} to {beyond.high:.3f}, 95 %)")
         try:
-            if "correlations" in study:
+            if not sample.independent:
                 raise Problem("no indices: those of Sobol take independent inputs")
-            surrogate = fit(sample[ended], distributions, values)
+            surrogate = fit(sample.values[ended], sample.distributions, values)
             first, total = surrogate.indices()
         except Problem as problem:
             lines.append(f"  {problem}")
             continue
         lines.append(f"  indices of Sobol, alone and with interactions (Q2 {surrogate.q2:.3f})")
-        lines += [f"  {key:<20} {a:6.3f} {b:6.3f}" for key, a, b in zip(study["inputs"], first, total)]
+        lines += [f"  {key:<20} {a:6.3f} {b:6.3f}" for key, a, b in zip(scatter.inputs, first, total)]
     return lines
 
 
-def main(words: Sequence[str] | None = None) -> None:
-    """Make the scatter of the command line."""
+def write_bands(scatter: Scatter, runs: list[Path], work: Path) -> None:
+    """Write the table and the picture of the bands."""
+    figure, axes = new_figure((7, 2.6 * len(scatter.bands)), len(scatter.bands), squeeze=False)
+    tables = []
+    for name, place in zip(scatter.bands, axes[:, 0]):
+        lengths, values = profiles(runs, name, scatter.mirror)
+        found = bands(values)
+        draw(place, lengths, found, name)
+        tables.append(pd.DataFrame({"band": name, "length": lengths, "mean": found.mean, "deviation": found.deviation,
+                                    **dict(zip(("q05", "q50", "q95"), found.quantiles))}))
+    pd.concat(tables).to_csv(work / "bands.csv", index=False, float_format="%.7g")
+    save(figure, work / "bands.png", 130)
+
+
+def options_of(words: Sequence[str] | None) -> argparse.Namespace:
+    """Return the options of a command line."""
     parser = new_parser("scatter", __doc__)
     parser.add_argument("study", type=Path, help="description of the scatter (TOML)")
     parser.add_argument("--work", type=Path, help="folder of the runs (default: the description's name with .scatter)")
     add_program(parser)
     parser.add_argument("--cores", type=int, default=os.cpu_count() or 1, metavar="N",
                         help="runs at a time, each with one thread (default: the number of cores)")
-    options: argparse.Namespace = parser.parse_args(words)
+    options = parser.parse_args(words)
     if options.cores < 1:
         parser.error("--cores takes a positive number")
-    study, program = read(options.study), find_program(options.program)
-    deck = options.study.parent / study["deck"]
+    return options
+
+
+def main(words: Sequence[str] | None = None) -> None:
+    """Make the scatter of the command line."""
+    options = options_of(words)
+    scatter, program = read(options.study), find_program(options.program)
+    deck = options.study.parent / scatter.deck
     if not deck.is_file():
         raise Problem(f"{deck}: no such file")
-    try:
-        distributions = [distribution(**row) for row in study["inputs"].values()]
-    except TypeError:
-        raise Problem(f"{options.study}: an input has kind, mean, deviation, low and high") from None
-    sample = latin_hypercube(distributions, study["runs"], study.get("correlations"), study.get("seed", 0))
+    sample = Sample(scatter)
     work = made_folder(options.work or options.study.with_suffix(".scatter"))
-    cases = cases_of(study, sample, work)
-    run_all(cases, program, deck, options.cores)
+    cases = sample.cases(scatter, work)
+    run_all(cases, program, deck, options.cores, attempt)
     for case in cases:
         if case.state == "reached":
-            case.results = [value_of(case.folder, *result(name))[0] for name in study["results"]]
-    write_table(work / "results.csv", cases, study["results"])
-    stopped = [case for case in cases if case.state != "reached"]
-    if len(cases) - len(stopped) > 1:
-        print("\n".join(describe(study, sample, distributions, cases)))
-    if stopped:
-        raise Problem(f"{len(stopped)} of {len(cases)} runs did not reach their end and are not in the figures above; "
-                      f"the first: {stopped[0].folder}")
+            case.results = [scalar(case.folder, name, scatter.places, scatter.mirror) for name in scatter.results]
+    write_table(work / "results.csv", cases, scatter.results)
+    ended = [case for case in cases if case.state == "reached"]
+    if len(ended) > 1:
+        print("\n".join(describe(scatter, sample, cases)))
+        if scatter.bands:
+            write_bands(scatter, [case.folder for case in ended], work)
+    lost = [case for case in cases if case.state != "reached"]
+    if lost:
+        refused = next((case for case in lost if case.state == REFUSED), None)
+        raise Problem(f"{len(lost)} of {len(cases)} runs did not reach their end and are not in the figures above; "
+                      f"the first: {lost[0].folder}" + (f"; refused: {refused.message}" if refused else ""))

@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Samples of scattered inputs: Latin hypercubes with given distributions and rank correlations."""
+"""Samples of scattered inputs: Latin hypercubes with given distributions and rank correlations, rows of a table."""
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy import stats
 
 from dd3.errors import Problem
+from dd3.tables import Row, is_whole, read_table
 
 # Keys of the distributions.
 NEEDED = {"normal": ("mean", "deviation"), "lognormal": ("mean", "deviation"),
@@ -79,3 +81,20 @@ def latin_hypercube(distributions: Sequence[Any], count: int, ranks: np.ndarray 
     if ranks is not None:
         places = correlate(places, ranks, seed)
     return np.column_stack([one.ppf(places[:, i]) for i, one in enumerate(distributions)])
+
+
+def read_coils(path: Path) -> list[Row]:
+    """Return the rows of a table of coils, commas between its columns; the heading has the names of parameters."""
+    rows = read_table(path)
+    if len(rows) < 2 or not all(map(is_whole, rows)) or not all(all(row.values()) for row in rows):
+        raise Problem(f"{path}: expected two coils or more, a value in each column")
+    return rows
+
+
+def coil_rows(coils: int, runs: int, seed: int, alone: bool) -> list[int]:
+    """Return the coil of each run, in random order: each as often as the others, up to one. alone: no other input is
+    drawn, so that a coil that is taken twice would be the same run. Error: more runs than coils that are alone."""
+    if alone and runs > coils:
+        raise Problem(f"{runs} runs of {coils} coils without further inputs; expected {coils} at most")
+    order = np.random.default_rng(seed).permutation(runs if not alone else coils)[:runs]
+    return [int(i) % coils for i in order] if coils else []

@@ -27,9 +27,9 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -48,17 +48,21 @@ from dd3.tables import read_table, totals
 FOLDS: dict[str, Callable[[np.ndarray], float]] = {
     "max": np.max, "min": np.min, "mean": np.mean, "last": lambda values: values[-1]}
 MOST = 10000  # combinations
+REFUSED = "refused"  # state of a run that the program refuses
 STUDY = "combinations.json"  # program, input file and combinations for the workflow of snakemake
 
 
 @dataclass
 class Case:
-    """A combination: its values by parameter, its folder, and its results once it has run."""
+    """A combination: its values by parameter, its folder, and its results once it has run. settings: parameters that
+    all combinations share. message: why it was refused."""
 
     values: dict[str, str]
     folder: Path
     state: str = ""
     results: list[float] | None = None
+    settings: dict[str, str] = field(default_factory=dict)
+    message: str = ""
 
 
 def parameter(text: str) -> tuple[str, list[str]]:
@@ -88,8 +92,15 @@ def result(text: str) -> tuple[str, str]:
     return name, fold
 
 
-def combinations(parameters: Sequence[tuple[str, list[str]]], work: Path) -> list[Case]:
-    """Return all combinations, each with a folder that names it."""
+def folder_name(values: Mapping[str, str]) -> str:
+    """Return the name of the folder of a run that tells its parameters."""
+    word = "_".join(f"{name}={value}" for name, value in values.items())
+    return "".join(c if c.isalnum() or c in "._=+-" else "-" for c in word)
+
+
+def combinations(parameters: Sequence[tuple[str, list[str]]], work: Path, settings: dict[str, str] | None = None
+                 ) -> list[Case]:
+    """Return all combinations, each with a folder that names it. settings: parameters that all share."""
     names = [name for name, _ in parameters]
     if len(set(names)) < len(names):
         raise Problem("a parameter of --vary is given twice")
@@ -99,8 +110,8 @@ def combinations(parameters: Sequence[tuple[str, list[str]]], work: Path) -> lis
     found = []
     for row in itertools.product(*(values for _, values in parameters)):
         values = dict(zip(names, row))
-        word = "_".join(f"{name}={value}" for name, value in values.items())
-        found.append(Case(values, work / "".join(c if c.isalnum() or c in "._=+-" else "-" for c in word)))
+        settings = settings or {}
+        found.append(Case(values, work / folder_name({**values, **settings}), settings=settings))
     if len({case.folder for case in found}) < len(found):
         raise Problem("values of --vary that differ in blanks or signs only: their folders would be the same")
     return found
@@ -122,10 +133,18 @@ def make(case: Case, program: Path, deck: Path) -> None:
     options: list[object] = ["--quiet", "--threads", "1"]
     if restart.is_file() and not old:
         options += ["--restart", restart]
-    done = launch(command(program, deck, case.folder, options, case.values))
+    done = launch(command(program, deck, case.folder, options, {**case.settings, **case.values}))
     if done.code == 2:
         raise Problem(done.errors.strip())
     case.state = state_of(case.folder)
+
+
+def attempt(case: Case, program: Path, deck: Path) -> None:
+    """Run a case unless it has ended; one that the program refuses has the state REFUSED and its message."""
+    try:
+        make(case, program, deck)
+    except Problem as problem:
+        case.state, case.message = REFUSED, str(problem)
 
 
 def value_of(folder: Path, name: str, fold: str) -> tuple[float, str]:
@@ -137,9 +156,9 @@ def value_of(folder: Path, name: str, fold: str) -> tuple[float, str]:
         label = name.replace("_", " ") + ("" if unit == "-" else f" ({unit})")
         return float(FOLDS[fold or "last"](history[name].to_numpy(float))), label + how
     fields = Fields(folder)
-    field = name.partition(":")[0]
-    at_cells = field in fields.grid["CellData"]
-    if not at_cells and field not in fields.grid["PointData"]:
+    stem = name.partition(":")[0]
+    at_cells = stem in fields.grid["CellData"]
+    if not at_cells and stem not in fields.grid["PointData"]:
         raise Problem(f"no result '{name}'; there are the columns {', '.join(history)} and the fields "
                       f"{', '.join(fields.grid['CellData'])}")
     if fold == "last":
@@ -148,12 +167,13 @@ def value_of(folder: Path, name: str, fold: str) -> tuple[float, str]:
     return float(FOLDS[fold or "max"](values)), label + how
 
 
-def run_all(cases: list[Case], program: Path, deck: Path, cores: int) -> None:
-    """Run the cases, as many at a time as there are cores for them, with a bar."""
+def run_all(cases: list[Case], program: Path, deck: Path, cores: int,
+            run: Callable[[Case, Path, Path], None] = make) -> None:
+    """Run the cases by a function, as many at a time as there are cores for them, with a bar."""
     bar = counter("runs", "run")
     bar.total = len(cases)
     with ThreadPoolExecutor(cores) as pool:
-        waiting = [pool.submit(make, case, program, deck) for case in cases]
+        waiting = [pool.submit(run, case, program, deck) for case in cases]
         try:
             for one in waiting:
                 one.result()
@@ -206,7 +226,8 @@ def write_table(path: Path, cases: list[Case], names: list[str]) -> list[list[st
     """Write results.csv and return its rows, the heading first."""
     rows = [[*cases[0].values, *names, "state", "increments", "iterations", "seconds"]]
     for case in cases:
-        status = read_table(case.folder / "status.csv")  # an interrupted run's rows too
+        path_of_status = case.folder / "status.csv"  # an interrupted run has it too, a refused one not
+        status = read_table(path_of_status) if path_of_status.is_file() else []
         sums, seconds = totals(status), sum(float(row["seconds"]) for row in status)
         found = [f"{value:.7g}" for value in case.results] if case.results else [""] * len(names)
         rows.append([*case.values.values(), *found, case.state, str(sums.increments), str(sums.iterations),
