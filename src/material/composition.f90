@@ -241,11 +241,12 @@ contains
     real(wp), intent(in) :: start(self%n_internal), increment, frequency
     type(flow_response_t), intent(inout) :: flow
 
-    real(wp) :: factor, slope
+    real(wp) :: factor, slope, by_strain
 
     if (self%viscous) then
-      call self%rate%law%factor(rate_after(self, start, increment, frequency), factor, slope)
-      flow%slope = factor*flow%slope + flow%value*slope*frequency
+      call self%rate%law%factor_at(start(1) + increment, &
+          rate_after(self, start, increment, frequency), factor, slope, by_strain)
+      flow%slope = factor*flow%slope + flow%value*(slope*frequency + by_strain)
       flow%gradient = factor*flow%gradient
       flow%value = factor*flow%value
     end if
