@@ -134,7 +134,7 @@ contains
     if (self%at_damage > 0) rows = [rows, internal_variable_t("fracture_damage", "", &
         "damage of the law of fracture, which reaches 1 at fracture", 1)]
     if (self%at_forming_limit > 0) rows = [rows, internal_variable_t("forming_limit_ratio", "", &
-        "largest plastic strain so far over that of the forming limit in the direction of flow", 1)]
+        "largest ratio so far of the plastic strain to that of the forming limit", 1)]
     rows(1)%first = 1
     do i = 2, size(rows)
       rows(i)%first = rows(i - 1)%first + rows(i - 1)%n_component
