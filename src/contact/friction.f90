@@ -94,7 +94,7 @@ contains
           0.0_wp, lower_open=.true.)])
     law(2) = table_law("table", "pressure", "MPa")
     law(3)%name = "stribeck"
-    law(3)%title = "after Stribeck: factor r + (1 - r) exp(-(v/v0)^n) by the speed v of sliding"
+    law(3)%title = "Stribeck's curve over the speed: factor r + (1 - r) exp(-(v/v0)^n)"
     law(3)%source = "Armstrong-Helouvry et al. 1994"
     allocate (law(3)%rows, source=[ &
       row("v0", kind_real, "mm/s", "", "speed at which the decrease has reached 63 %", 0.0_wp, &

@@ -134,7 +134,7 @@ contains
     if (self%at_damage > 0) rows = [rows, internal_variable_t("fracture_damage", "", &
         "damage of the law of fracture, which reaches 1 at fracture", 1)]
     if (self%at_forming_limit > 0) rows = [rows, internal_variable_t("forming_limit_ratio", "", &
-        "largest plastic strain over that of the forming limit in the direction of flow", 1)]
+        "largest ratio so far of the plastic strain to that of the forming limit", 1)]
     rows(1)%first = 1
     do i = 2, size(rows)
       rows(i)%first = rows(i - 1)%first + rows(i - 1)%n_component
@@ -241,11 +241,12 @@ contains
     real(wp), intent(in) :: start(self%n_internal), increment, frequency
     type(flow_response_t), intent(inout) :: flow
 
-    real(wp) :: factor, slope
+    real(wp) :: factor, slope, by_strain
 
     if (self%viscous) then
-      call self%rate%law%factor(rate_after(self, start, increment, frequency), factor, slope)
-      flow%slope = factor*flow%slope + flow%value*slope*frequency
+      call self%rate%law%factor_at(start(1) + increment, &
+          rate_after(self, start, increment, frequency), factor, slope, by_strain)
+      flow%slope = factor*flow%slope + flow%value*(slope*frequency + by_strain)
       flow%gradient = factor*flow%gradient
       flow%value = factor*flow%value
     end if

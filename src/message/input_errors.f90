@@ -128,7 +128,8 @@ contains
           "pressure that fall more slowly than 1/p."), &
       row("E163", "strain rate without a time", "The flow stress depends on the strain "// &
           "rate, or the friction on the speed, but a phase, or a point, has no time.", &
-          "`duration` or `speed` in each `*PHASE`, also in those of springback; `duration` in `*POINT`."), &
+          "`duration` or `speed` in each `*PHASE`, also in those of springback; `duration` "// &
+          "in `*POINT`."), &
       row("E164", "times", "The time of a phase or of a point is given twice, or for "// &
           "something it does not have.", "`duration`; or `speed` where the controlling "// &
           "tool has a `move`."), &

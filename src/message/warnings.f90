@@ -208,8 +208,8 @@ contains
           "all points through the thickness of an element for the first time.", &
           "Larger radii, less restraint and friction; the field `forming_limit_ratio`."), &
       row("W128", "heat of plastic work", &
-          "At the end of the run, or where it stops, adiabatic heating leaves less than a tenth "// &
-          "of the flow stress at a point: the sheet is near melting.", &
+          "At the end of the run, or where it stops, adiabatic heating leaves less than a "// &
+          "tenth of the flow stress at a point: the sheet is near melting.", &
           "Check `heat_capacity`, `density` and the law `temperature`; a slow process is not "// &
           "adiabatic.")]
   end function sheet_warnings

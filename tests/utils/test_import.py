@@ -228,6 +228,24 @@ def test_heating():
     assert not found.law.heating and not found.law.rate and any("RATEOP = 2" in note for note in found.notes)
 
 
+def test_table_of_rates():
+    """Check *MAT_024 with a table: with VP = 1 the curves by their rates, in the units of the deck, otherwise or where
+    they cross that of the lowest rate."""
+    def card(*more, slow=210.0, fast=230.0):
+        return with_material("*MAT_024", row(1, "7.8E-9", "2.1E5", 0.3), row("", "", 50, "", *more), "*DEFINE_TABLE",
+                             row(50), row(0.1), row(10.0), *curve(51, (0.0, slow), (1.0, 300.0)),
+                             *curve(52, (0.0, fast), (0.5, 300.0), (1.0, 310.0)))
+    found, deck = imported(card(1.0))
+    assert "  hardening = table 0:210 1:300\n" in deck
+    assert "  rate = curves r1=0.1 r2=10 &\n    0:210 1:300 &\n    0:230 0.5:300 1:310\n" in deck
+    assert not any("VP" in str(item) for item in found.left_out), found.left_out
+    assert any("logarithm" in note for note in found.notes)
+    for text in (card(), card(1.0, slow=240.0)):
+        found, deck = imported(text)
+        assert not found.law.rate and "  rate = " not in deck
+        assert any("lowest strain rate" in note for note in found.notes)
+
+
 def test_further_cards():
     """Check tables, parts that follow another, draw-beads, and what is left out or refused for its axes or places."""
     text = with_material("*MAT_024", row(1, "7.8E-9", "2.1E5", 0.3), row("", "", 50), "*DEFINE_TABLE", row(50), row(0.1),

@@ -276,7 +276,7 @@ PICTURES = {
                                       "hockett_sherby")},
     "table": (tension, {"points_of": TABLE}), "teodosiu_hu": (teodosiu_hu, {}),
     "yoshida_uemori": (yoshida_uemori, {}), "chord": (chord, {}),
-    **{law: (rates, {}) for law in ("cowper_symonds", "johnson_cook", "power")}, "prager": (prager, {}),
+    **{law: (rates, {}) for law in ("cowper_symonds", "johnson_cook", "power", "curves")}, "prager": (prager, {}),
     "hosford_coulomb": (fracture, {}),
     "lemaitre_chaboche": (lemaitre_chaboche, {}),
 }

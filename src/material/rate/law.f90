@@ -11,6 +11,7 @@ module dd3_material_rate_law
   type, abstract, extends(law_t) :: rate_t
   contains
     procedure(factor_interface), deferred :: factor
+    procedure :: factor_at
   end type rate_t
 
   !> Container of a law of any type; not allocated for a flow stress that does not depend on it.
@@ -29,5 +30,21 @@ module dd3_material_rate_law
       real(wp), intent(out) :: value, slope
     end subroutine factor_interface
   end interface
+
+contains
+
+  !> Evaluate the factor at a plastic strain, on which it does not depend by default.
+  pure subroutine factor_at(self, strain, rate, value, slope, by_strain)
+    class(rate_t), intent(in) :: self
+    !> Equivalent plastic strain, and its rate, 1/s.
+    real(wp), intent(in) :: strain, rate
+    !> Factor and its derivatives in the rate, s, and in the strain.
+    real(wp), intent(out) :: value, slope, by_strain
+
+    associate (unused => strain)
+    end associate
+    call self%factor(rate, value, slope)
+    by_strain = 0.0_wp
+  end subroutine factor_at
 
 end module dd3_material_rate_law

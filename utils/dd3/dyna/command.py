@@ -6,10 +6,10 @@
     dd3imp cup/cup.dat
 
 The blank is the part that deforms, of quadrilateral shells, which are extruded about their mid-surface, or hexahedra;
-the tools are rigid parts in contact with it. Materials: *MAT_003, 015, 018, 024, 036, 037, 122, 133. Motions and forces by
-curves become phases: a phase ends where a tool starts, stops or turns back, or where tools go on in other proportions;
-a force that changes meanwhile gets a press_table. Each keyword and each field that is not used is listed with its line
-and the reason, here and in the input file.
+the tools are rigid parts in contact with it. Materials: *MAT_003, 015, 018, 024, 036, 037, 122, 133. Motions and forces
+by curves become phases: a phase ends where a tool starts, stops or turns back, or where tools go on in other
+proportions; a force that changes meanwhile gets a press_table. Each keyword and each field that is not used is listed
+with its line and the reason, here and in the input file.
 """
 
 import sys

@@ -79,8 +79,26 @@ class Curves:
             self.found[number] = smooth(card) if card.keyword.endswith("SMOOTH") else polygon(card)
         return self.found[number]
 
+    def table(self, number: int, place: str) -> list[tuple[float, Curve]]:
+        """Return the rates of a table, which are logarithms if one is negative, and their curves, by rate."""
+        rows = self.rows(number)
+        logarithms = min(rate for rate, _, _ in rows) < 0
+        return [(float(np.exp(rate)) if logarithms else rate, self.get(label, place))
+                for rate, label, _ in sorted(rows, key=lambda row: row[0])]
+
     def lowest(self, number: int) -> int:
         """Return the curve of the lowest rate of a table."""
+        rates = self.rows(number)
+        least = min(rates, key=lambda rate: rate[0])
+        for _, label, row in rates:
+            if row is not least[2]:
+                row.drop("the curve of the lowest strain rate is taken; rates are not available")
+                if label in self.cards and label != least[1]:
+                    self.cards[label].leave("the curve of the lowest strain rate of its table is taken")
+        return least[1]
+
+    def rows(self, number: int) -> list[tuple[float, int, Row]]:
+        """Return the rates of a table, the numbers of their curves and their rows."""
         card, behind = self.tables[number]
         head = card.row(0, "TBID SFA OFFA")
         head.numbers("TBID SFA OFFA")
@@ -94,13 +112,7 @@ class Curves:
             if len(behind) < len(rates):
                 raise Problem(f"{card.place}: error: a table of {len(rates)} values and {len(behind)} curves behind it")
             rates = [(value, curve.first(0), row) for (value, _, row), curve in zip(rates, behind)]
-        least = min(rates, key=lambda rate: rate[0])
-        for _, label, row in rates:
-            if row is not least[2]:
-                row.drop("the curve of the lowest strain rate is taken; rates are not available")
-                if label in self.cards and label != least[1]:
-                    self.cards[label].leave("the curve of the lowest strain rate of its table is taken")
-        return least[1]
+        return rates
 
 
 def polygon(card: Card) -> Curve:

@@ -6,9 +6,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from dd3.dyna.cards import Row
+from dd3.dyna.curves import Curve
 from dd3.dyna.deck import Deck
 from dd3.errors import Problem
 
+MOST_CURVES = 8  # of a law of the rate
 SOFT_STRAINS = (0.0, 0.0005, 0.001, 0.002, 0.003, 0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.04, 0.06, 0.08, 0.1, 0.15,
                 0.2, 0.3, 0.4, 0.6, 0.8, 1.0)  # of a table that replaces a law
 
@@ -91,7 +93,27 @@ def by_curve(deck: Deck, number: int, units: Units, law: Law, place: str) -> str
     """Return hardening by points of plastic strain and flow stress."""
     if number in deck.curves.tables:
         law.notes.append("hardening: the curve of the lowest strain rate; rates are not available")
-    curve = deck.curves.get(number, place)
+    return "table " + points_of(deck.curves.get(number, place), units, law)
+
+
+def by_table(deck: Deck, number: int, units: Units, law: Law, place: str) -> str:
+    """Return hardening by the first curve of a table of rates, and take the others as law of the rate. A table that is
+    not one here, of more than eight curves, of curves that cross or of a rate of zero, is that of its lowest rate."""
+    table = deck.curves.table(number, place)
+    curves = [(rate / units.time, points_of(curve, units, law)) for rate, curve in table]
+    values = [np.array([point.split(":") for point in points.split()], float) for _, points in curves]
+    strains = np.unique(np.concatenate([value[:, 0] for value in values]))
+    stresses = np.array([np.interp(strains, *value.T) for value in values])
+    if not 2 <= len(curves) <= MOST_CURVES or curves[0][0] <= 0 or (np.diff(stresses, axis=0) < 0).any():
+        return by_curve(deck, number, units, law, place)
+    law.rate = "curves " + " ".join(f"r{k}={rate:.6g}" for k, (rate, _) in enumerate(curves, 1)) + "".join(
+        f" &\n    {points}" for _, points in curves)
+    law.notes.append("hardening: the flow stress is straight over the logarithm of the rate between the curves")
+    return f"table {curves[0][1]}"
+
+
+def points_of(curve: Curve, units: Units, law: Law) -> str:
+    """Return the points of a hardening curve, from a plastic strain of zero on."""
     strain, stress = curve.x.copy(), curve.y * units.stress
     for i in range(len(strain)):
         if strain[i] < 0:
@@ -104,7 +126,7 @@ def by_curve(deck: Deck, number: int, units: Units, law: Law, place: str) -> str
         law.notes.append(f"hardening: the flow stress falls behind the plastic strain {strain[falls[0]]:g}")
     if strain[0] > 0:
         strain, stress = np.append(0.0, strain), np.append(stress[0], stress)
-    return "table " + " ".join(f"{p:.6g}:{y:.6g}" for p, y in zip(strain, stress))
+    return " ".join(f"{p:.6g}:{y:.6g}" for p, y in zip(strain, stress))
 
 
 def cowper_symonds(row: Row, units: Units) -> str:

@@ -12,6 +12,7 @@ from dd3.dyna.hardening import (
     Law,
     Units,
     by_curve,
+    by_table,
     chaboche,
     cowper_symonds,
     first_strain,
@@ -92,8 +93,8 @@ def law_of(deck: Deck, card: Card, units: Units, axes: np.ndarray) -> Law:
     """Return the laws of a material; `axes` are the first edge and the normal of the blank's first element."""
     number = number_of(card)
     readers: dict[int, Callable[[Deck, Card, Units, Law], int]] = {
-        3: bilinear, 15: heated_johnson_cook, 18: power_law, 24: piecewise, 36: barlat_lian, 37: transverse, 98: johnson_cook, 122: hill,
-        125: two_surfaces, 133: yld2000, 226: two_surfaces_barlat}
+        3: bilinear, 15: heated_johnson_cook, 18: power_law, 24: piecewise, 36: barlat_lian, 37: transverse,
+        98: johnson_cook, 122: hill, 125: two_surfaces, 133: yld2000, 226: two_surfaces_barlat}
     if number not in readers:
         raise Problem(f"{card.place}: error: the material {card.keyword} of the blank is not read; expected *MAT_ "
                       + READ)
@@ -175,7 +176,10 @@ def piecewise(deck: Deck, card: Card, units: Units, law: Law) -> int:
     at = [(p, y) for k in range(1, 9) if (y := stresses.number(f"ES{k}"))
           for p in (strains.number(f"EPS{k}"),)] if not curve else []
     if curve:
-        law.hardening = by_curve(deck, curve, units, law, second.place)
+        tabled = viscoplastic and curve in deck.curves.tables
+        law.hardening = (by_table if tabled else by_curve)(deck, curve, units, law, second.place)
+        if law.rate and tabled:
+            second.number("VP")
         strains.leave("LCSS goes before")
         stresses.leave("LCSS goes before")
         row.leave("LCSS goes before", "SIGY ETAN")
