@@ -14,7 +14,8 @@ module dd3_external_blas
   character(len=*), parameter :: avx2 = "Haswell", avx512 = "SkylakeX"
   character(len=*), parameter :: below_avx2(5) = [character(len=9) :: "Prescott", "Core2", &
       "Nehalem", "Barcelona", "Generic"]
-  character(len=*), parameter :: below_avx512(7) = [character(len=9) :: below_avx2, avx2, "Zen"]
+  character(len=*), parameter :: below_avx512(7) = [character(len=9) :: "Prescott", "Core2", &
+      "Nehalem", "Barcelona", "Generic", "Haswell", "Zen"]
   character(len=*), parameter :: avx2_flag(2) = [character(len=8) :: "avx2", "fma"]
   character(len=*), parameter :: avx512_flag(4) = [character(len=8) :: "avx512f", "avx512dq", &
       "avx512bw", "avx512vl"]
@@ -80,7 +81,7 @@ contains
     end do
   end function kernels_in_use
 
-  !> Return the flags of the first processor, each between blanks; empty if they are unknown (Linux).
+  !> Return the flags of the first processor, each between blanks; empty if unknown (Linux).
   function processor_flags() result(flags)
     character(len=:), allocatable :: flags
 
@@ -114,9 +115,10 @@ contains
 
   !> Begin the program again with its arguments; without effect if that is not possible.
   subroutine begin_again()
-    character(kind=c_char, len=:), allocatable, target :: text(:)
-    type(c_ptr) :: argument(command_argument_count() + 2)
-    integer :: i, n, longest
+    character(len=1, kind=c_char), allocatable, target :: text(:, :)
+    character(len=:), allocatable :: word
+    type(c_ptr), allocatable :: argument(:)
+    integer :: i, j, n, longest
     integer(c_int) :: ignored
 
     longest = 0
@@ -124,12 +126,16 @@ contains
       call get_command_argument(i, length=n)
       longest = max(longest, n)
     end do
-    allocate (character(kind=c_char, len=longest + 1) :: text(0:command_argument_count()))
-    argument = c_null_ptr
-    do i = 0, command_argument_count()
-      call get_command_argument(i, text(i), n)
-      text(i)(n + 1:n + 1) = c_null_char
-      argument(i + 1) = c_loc(text(i))
+    allocate (argument(command_argument_count() + 2))
+    argument(:) = c_null_ptr
+    allocate (text(longest + 1, size(argument)), source=c_null_char)
+    allocate (character(len=longest) :: word)
+    do i = 1, size(argument) - 1
+      call get_command_argument(i - 1, word, n)
+      do j = 1, n
+        text(j, i) = word(j:j)
+      end do
+      argument(i) = c_loc(text(1, i))
     end do
     ignored = posix_execv("/proc/self/exe"//c_null_char, argument)
   end subroutine begin_again
