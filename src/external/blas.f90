@@ -3,8 +3,8 @@
 !> instead.
 module dd3_external_blas
   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_f_pointer, c_int, c_loc, &
-      c_null_char, c_null_ptr, c_ptr
-  use dd3_base_posix, only : posix_execv, posix_setenv
+      c_null_char, c_null_ptr, c_ptr, c_size_t
+  use dd3_base_posix, only : posix_execv, posix_readlink, posix_setenv
   implicit none
   private
   public :: use_one_blas_thread, use_kernels_of_processor
@@ -115,7 +115,10 @@ contains
 
   !> Begin the program again with its arguments; without effect if that is not possible.
   subroutine begin_again()
+    !> Longest path.
+    integer, parameter :: longest_path = 4096
     character(len=1, kind=c_char), allocatable, target :: text(:, :)
+    character(len=1, kind=c_char) :: path(longest_path)
     character(len=:), allocatable :: word
     type(c_ptr), allocatable :: argument(:)
     integer :: i, j, n, longest
@@ -137,7 +140,9 @@ contains
       end do
       argument(i) = c_loc(text(1, i))
     end do
-    ignored = posix_execv("/proc/self/exe"//c_null_char, argument)
+    path = c_null_char
+    if (posix_readlink("/proc/self/exe"//c_null_char, path, size(path, kind=c_size_t) - 1) > 0) &
+        ignored = posix_execv(path, argument)
   end subroutine begin_again
 
 end module dd3_external_blas
