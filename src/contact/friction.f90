@@ -15,7 +15,7 @@ module dd3_contact_friction
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : kind_real, kind_text, law_value_t, pair_name, row
   use dd3_base_text, only : same_name, to_text
-  use dd3_material_description, only : add_problem, description_t, problem_t, value_of
+  use dd3_material_description, only : add_problem, check_table, description_t, problem_t, value_of
   implicit none
   private
   public :: friction_t, friction_limit_t, sliding_t, coulomb
@@ -128,6 +128,7 @@ contains
     type(law_value_t), intent(in) :: values(:)
     type(problem_t), allocatable, intent(out) :: problems(:)
 
+    character(len=:), allocatable :: what
     real(wp), allocatable :: x(:), f(:)
     integer :: i
 
@@ -140,19 +141,17 @@ contains
     if (same_name(name, "power") .or. same_name(name, "stribeck")) return
     x = values%abscissa
     f = values%value
-    if (size(x) < 2) then
-      call add_problem(problems, 0, "a table needs two points at least", trim(name)// &
-          " x1:f1 x2:f2 ...")
-      return
+    what = "pressure"
+    if (same_name(name, "speed_table")) what = "speed"
+    if (same_name(name, "strain_table")) what = "plastic strain"
+    call check_table(values, what, what//"s", trim(name)//" x1:f1 x2:f2 ...", problems)
+    if (size(x) > 0) then
+      if (x(1) < 0.0_wp) call add_problem(problems, 1, "the "//what//" is negative", &
+          what//"s from 0 on")
     end if
-    if (x(1) < 0.0_wp) call add_problem(problems, 1, "the first value is negative", &
-        "values from 0 on")
+    if (.not. same_name(name, "table")) return
     do i = 2, size(x)
-      if (.not. x(i) > x(i - 1)) then
-        call add_problem(problems, i, to_text(x(i))//" is not larger than the value before", &
-            "values that rise")
-      else if (same_name(name, "table") .and. &
-          f(i) + x(i)*(f(i) - f(i - 1))/(x(i) - x(i - 1)) < 0.0_wp) then
+      if (x(i) > x(i - 1) .and. f(i)*(x(i) - x(i - 1)) + x(i)*(f(i) - f(i - 1)) < 0.0_wp) then
         call add_problem(problems, i, "the friction stress f p falls before "//to_text(x(i))// &
             " MPa", "a factor that falls more slowly than 1/p")
       end if

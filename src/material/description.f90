@@ -9,7 +9,7 @@ module dd3_material_description
   implicit none
   private
   public :: description_t, internal_variable_t, problem_t, law_choice_t
-  public :: position_of, value_of, is_given, add_problem, check_strains
+  public :: position_of, value_of, is_given, add_problem, check_table, check_strains
 
   !> Largest plastic strain of a table, to detect strains given in per cent.
   real(wp), parameter :: largest_strain = 10.0_wp
@@ -113,6 +113,29 @@ contains
     call move_alloc(longer, problems)
   end subroutine add_problem
 
+  !> Require two points or more of a table, at places that rise.
+  pure subroutine check_table(values, place, places, form, problems)
+    type(law_value_t), intent(in) :: values(:)
+    !> What the places are, singular and plural, and the form of a table.
+    character(len=*), intent(in) :: place, places, form
+    type(problem_t), allocatable, intent(inout) :: problems(:)
+
+    integer, allocatable :: point(:)
+    integer :: i
+
+    point = pack([(i, i=1, size(values))], values%name == pair_name)
+    if (size(point) < 2) then
+      call add_problem(problems, 0, "a table needs two points at least", form)
+    end if
+    do i = 2, size(point)
+      associate (now => values(point(i))%abscissa)
+        if (.not. now > values(point(i - 1))%abscissa) call add_problem(problems, point(i), &
+            "the "//place//" "//to_text(now)//" is not larger than the one before", &
+            places//" that rise")
+      end associate
+    end do
+  end subroutine check_table
+
   !> Require two points or more of a table, and plastic strains that increase from zero to at most
   !> `largest_strain`.
   pure subroutine check_strains(values, initial, form, problems)
@@ -121,28 +144,20 @@ contains
     character(len=*), intent(in) :: initial, form
     type(problem_t), allocatable, intent(inout) :: problems(:)
 
-    integer :: i, last
+    integer :: first, last
 
-    last = 0
-    do i = 1, size(values)
-      if (values(i)%name /= pair_name) cycle
-      if (last == 0) then
-        if (abs(values(i)%abscissa) > 0.0_wp) call add_problem(problems, i, &
-            "the first point has a plastic strain of "//to_text(values(i)%abscissa), initial)
-      else if (.not. values(i)%abscissa > values(last)%abscissa) then
-        call add_problem(problems, i, "the plastic strain "//to_text(values(i)%abscissa)// &
-            " is not larger than the one before", "plastic strains that rise")
-      end if
-      last = i
-    end do
+    first = position_of(values, pair_name)
+    if (first > 0) then
+      if (abs(values(first)%abscissa) > 0.0_wp) call add_problem(problems, first, &
+          "the first point has a plastic strain of "//to_text(values(first)%abscissa), initial)
+    end if
+    last = findloc(values%name, pair_name, dim=1, back=.true.)
     if (last > 0) then
       if (values(last)%abscissa > largest_strain) call add_problem(problems, last, &
           "the plastic strain "//to_text(values(last)%abscissa)//" is larger than "// &
           to_text(largest_strain), "plastic strains: 0.1 is about 10 %")
     end if
-    if (count(values%name == pair_name) < 2 .and. size(problems) == 0) then
-      call add_problem(problems, 0, "a table needs two points at least", form)
-    end if
+    call check_table(values, "plastic strain", "plastic strains", form, problems)
   end subroutine check_strains
 
 end module dd3_material_description

@@ -65,50 +65,35 @@ contains
     end do
     call set_gaps(model, case, errors)
     call check_times(model, case, errors)
-    call check_friction_times(model, case, errors)
   end subroutine new_phases
 
-  !> Report phases without a time, if the flow stress of an element depends on the strain rate.
+  !> Report phases without a time, if the flow stress of an element depends on the strain rate, or
+  !> the friction of a tool that acts on the speed.
   subroutine check_times(model, case, errors)
     type(model_t), intent(in) :: model
     type(case_t), intent(in) :: case
     !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
 
-    integer :: i, m
-
-    do m = 1, size(model%material)
-      if (.not. (model%material(m)%laws%viscous .and. any(model%material_of == m))) cycle
-      do i = 1, size(model%phase)
-        if (model%phase(i)%duration > 0.0_wp) cycle
-        call errors%push_input(case%phase(i)%source%opened, "the phase has no time, but "// &
-            "material '"//case%material(m)%source%called()//"' has a law of the strain rate", &
-            "duration = seconds, or speed = mm/s of the controlling tool", code="E163")
-      end do
-      return
-    end do
-  end subroutine check_times
-
-  !> Report phases without a time, if the friction of a tool that acts depends on the speed.
-  subroutine check_friction_times(model, case, errors)
-    type(model_t), intent(in) :: model
-    type(case_t), intent(in) :: case
-    !> Errors found are added.
-    type(error_list_t), intent(inout) :: errors
-
-    integer :: i, t
+    character(len=:), allocatable :: reason
+    integer :: i, m, t
 
     do i = 1, size(model%phase)
       if (model%phase(i)%duration > 0.0_wp) cycle
+      reason = ""
       do t = 1, model%n_tool
-        if (.not. (model%phase(i)%active(t) .and. model%tool(t)%friction%needs_time())) cycle
-        call errors%push_input(case%phase(i)%source%opened, "the phase has no time, but the "// &
-            "friction of tool '"//model%tool(t)%name//"' depends on the speed", &
-            "duration = seconds, or speed = mm/s of the controlling tool", code="E163")
-        exit
+        if (model%phase(i)%active(t) .and. model%tool(t)%friction%needs_time()) reason = &
+            "the friction of tool '"//model%tool(t)%name//"' depends on the speed"
       end do
+      do m = 1, size(model%material)
+        if (model%material(m)%laws%viscous .and. any(model%material_of == m)) reason = &
+            "material '"//case%material(m)%source%called()//"' has a law of the strain rate"
+      end do
+      if (reason /= "") call errors%push_input(case%phase(i)%source%opened, &
+          "the phase has no time, but "//reason, &
+          "duration = seconds, or speed = mm/s of the controlling tool", code="E163")
     end do
-  end subroutine check_friction_times
+  end subroutine check_times
 
   !> Make the phase before the first one: no motion, no load.
   subroutine new_idle_phase(phase, model)

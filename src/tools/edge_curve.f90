@@ -1,72 +1,24 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Open edges of a surface as curves: their points, bounding boxes and the closest point to a point.
+!> Open edges of a surface as curves: their points, directions and the closest point to a point.
 module dd3_tools_edge_curve
   use dd3_base_kinds, only : wp
   use dd3_tools_bezier, only : position_at
-  use dd3_tools_surface, only : surface_t, edge_parameters
+  use dd3_tools_surface, only : border_edge_t, edge_parameters, n_chord, surface_t
   implicit none
   private
-  public :: edge_curve_t, open_edges, point_on, direction_at, closest_on
+  public :: point_on, direction_at, closest_on
 
-  !> Number of chords.
-  integer, parameter :: n_chord = 16
   !> Number of golden sections: the interval shrinks to 1e-8 of a chord.
   integer, parameter :: n_section = 38
   !> Step of the parameter for directions.
   real(wp), parameter :: step = 1.0e-3_wp
 
-  !> An edge of a patch.
-  type :: edge_curve_t
-    !> Patch, and number of its edge as in `edge_t`.
-    integer :: patch = 0, edge = 0
-    !> End points of the chords, mm.
-    real(wp) :: point(3, 0:n_chord) = 0.0_wp
-    !> Bounding box of these, mm.
-    real(wp) :: lower(3) = 0.0_wp, upper(3) = 0.0_wp
-    !> Length of the longest chord, mm.
-    real(wp) :: chord = 0.0_wp
-  end type edge_curve_t
-
 contains
-
-  !> Return the edges without a neighbour, poles excluded.
-  pure function open_edges(surface) result(curve)
-    type(surface_t), intent(in) :: surface
-    type(edge_curve_t), allocatable :: curve(:)
-
-    integer :: i, k, n
-
-    allocate (curve(count(surface%edge%patch == 0 .and. .not. surface%edge%pole)))
-    n = 0
-    do i = 1, size(surface%patch)
-      do k = 1, 4
-        if (surface%edge(k, i)%patch > 0 .or. surface%edge(k, i)%pole) cycle
-        n = n + 1
-        curve(n)%patch = i
-        curve(n)%edge = k
-        call set_chords(surface, curve(n))
-      end do
-    end do
-  end function open_edges
-
-  pure subroutine set_chords(surface, curve)
-    type(surface_t), intent(in) :: surface
-    type(edge_curve_t), intent(inout) :: curve
-
-    integer :: s
-
-    do s = 0, n_chord
-      curve%point(:, s) = point_on(surface, curve, real(s, wp)/n_chord)
-      if (s > 0) curve%chord = max(curve%chord, norm2(curve%point(:, s) - curve%point(:, s - 1)))
-    end do
-    curve%lower = minval(curve%point, dim=2)
-    curve%upper = maxval(curve%point, dim=2)
-  end subroutine set_chords
 
   !> Return a point of the curve, mm.
   pure function point_on(surface, curve, t) result(point)
     type(surface_t), intent(in) :: surface
-    type(edge_curve_t), intent(in) :: curve
+    type(border_edge_t), intent(in) :: curve
     !> Parameter, 0 to 1.
     real(wp), intent(in) :: t
     real(wp) :: point(3)
@@ -80,7 +32,7 @@ contains
   !> Return the unit tangent by a difference; zero where the curve stands still.
   pure function direction_at(surface, curve, t) result(direction)
     type(surface_t), intent(in) :: surface
-    type(edge_curve_t), intent(in) :: curve
+    type(border_edge_t), intent(in) :: curve
     real(wp), intent(in) :: t
     real(wp) :: direction(3)
 
@@ -92,7 +44,7 @@ contains
   !> Find the closest point of the curve: the nearest end of a chord, improved by golden sections.
   pure subroutine closest_on(surface, curve, x, search_distance, t, distance)
     type(surface_t), intent(in) :: surface
-    type(edge_curve_t), intent(in) :: curve
+    type(border_edge_t), intent(in) :: curve
     !> mm.
     real(wp), intent(in) :: x(3)
     !> Distances beyond it are not needed, mm.

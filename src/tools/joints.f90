@@ -6,8 +6,8 @@ module dd3_tools_joints
   use dd3_base_kinds, only : wp
   use dd3_base_sorting, only : ascending
   use dd3_tools_bezier, only : normal_at
-  use dd3_tools_edge_curve, only : edge_curve_t, open_edges, point_on, direction_at, closest_on
-  use dd3_tools_surface, only : surface_t, coincident, edge_parameters
+  use dd3_tools_edge_curve, only : point_on, direction_at, closest_on
+  use dd3_tools_surface, only : border_edge_t, coincident, edge_parameters, surface_t
   implicit none
   private
   public :: surface_report_t, near_miss_t, new_surface_report
@@ -56,16 +56,13 @@ contains
     !> Largest gap of edges that count as near, mm.
     real(wp), intent(in) :: largest_gap
 
-    type(edge_curve_t), allocatable :: curve(:)
-
     self%n_patch = size(surface%patch)
     self%n_pole = count(surface%edge%pole)
     self%n_joined = count(surface%edge%patch > 0)/2
     call find_kinks(self, surface)
     allocate (self%t_junction(3, 0), self%t_patch(2, 0), self%near_miss(0))
-    curve = open_edges(surface)
-    self%n_open = size(curve)
-    call compare_near_curves(self, surface, curve, largest_gap)
+    self%n_open = size(surface%border)
+    call compare_near_curves(self, surface, surface%border, largest_gap)
   end subroutine new_surface_report
 
   !> Count the joined edges across which the normal jumps, and find the largest jump.
@@ -118,7 +115,7 @@ contains
   pure subroutine compare_near_curves(self, surface, curve, largest_gap)
     type(surface_report_t), intent(inout) :: self
     type(surface_t), intent(in) :: surface
-    type(edge_curve_t), intent(in) :: curve(:)
+    type(border_edge_t), intent(in) :: curve(:)
     real(wp), intent(in) :: largest_gap
 
     integer :: order(size(curve)), axis, a, b, i, j
@@ -142,7 +139,7 @@ contains
   pure subroutine compare_curves(self, surface, a, b, largest_gap)
     type(surface_report_t), intent(inout) :: self
     type(surface_t), intent(in) :: surface
-    type(edge_curve_t), intent(in) :: a, b
+    type(border_edge_t), intent(in) :: a, b
     real(wp), intent(in) :: largest_gap
 
     real(wp) :: tolerance, limit, gap
@@ -167,7 +164,7 @@ contains
   pure subroutine measure_gap(surface, a, b, limit, beside, gap)
     type(surface_t), intent(in) :: surface
     !> Edge of the probes, and the other one.
-    type(edge_curve_t), intent(in) :: a, b
+    type(border_edge_t), intent(in) :: a, b
     !> Largest distance of edges beside each other, mm.
     real(wp), intent(in) :: limit
     integer, intent(out) :: beside
@@ -191,7 +188,7 @@ contains
   !> mm; 0 if their ends differ.
   pure real(wp) function distance_at_equal_parameters(surface, a, b, limit) result(distance)
     type(surface_t), intent(in) :: surface
-    type(edge_curve_t), intent(in) :: a, b
+    type(border_edge_t), intent(in) :: a, b
     !> Largest distance of common ends, mm.
     real(wp), intent(in) :: limit
 
@@ -215,7 +212,7 @@ contains
     type(surface_report_t), intent(inout) :: self
     type(surface_t), intent(in) :: surface
     !> Edge of the end points, and the other one.
-    type(edge_curve_t), intent(in) :: a, b
+    type(border_edge_t), intent(in) :: a, b
     real(wp), intent(in) :: tolerance
 
     real(wp) :: t, distance

@@ -5,8 +5,7 @@
 module dd3_material_fracture_table
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t, row, kind_real, kind_text, pair_name
-  use dd3_base_text, only : to_text
-  use dd3_material_description, only : description_t, problem_t, add_problem, value_of
+  use dd3_material_description, only : description_t, problem_t, check_table, value_of
   use dd3_material_fracture_law, only : fracture_t
   use dd3_material_straight, only : straight
   implicit none
@@ -51,19 +50,9 @@ contains
     type(law_value_t), intent(in) :: values(:)
     type(problem_t), allocatable, intent(inout) :: problems(:)
 
-    integer, allocatable :: place(:)
-    integer :: i
-
     if (size(problems) > 0) return
-    place = pack([(i, i=1, size(values))], values%name == pair_name)
-    if (size(place) < 2) call add_problem(problems, 0, "a table needs two points at least", &
-        "triaxiality1:strain1 triaxiality2:strain2 ...")
-    do i = 2, size(place)
-      if (values(place(i))%abscissa > values(place(i - 1))%abscissa) cycle
-      call add_problem(problems, place(i), "the triaxiality "// &
-          to_text(values(place(i))%abscissa)//" is not larger than the one before", &
-          "triaxialities that rise")
-    end do
+    call check_table(values, "triaxiality", "triaxialities", "triaxiality1:strain1 "// &
+        "triaxiality2:strain2 ...", problems)
   end subroutine check
 
   subroutine set(self, values)

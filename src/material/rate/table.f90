@@ -5,7 +5,8 @@ module dd3_material_rate_table
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t, row, kind_real, kind_text, pair_name
   use dd3_base_text, only : to_text
-  use dd3_material_description, only : description_t, problem_t, add_problem, value_of
+  use dd3_material_description, only : description_t, problem_t, add_problem, check_table, &
+      value_of
   use dd3_material_rate_law, only : rate_t
   use dd3_material_straight, only : straight
   implicit none
@@ -57,11 +58,8 @@ contains
 
     if (size(problems) > 0) return
     place = pack([(i, i=1, size(values))], values%name == pair_name)
-    if (size(place) < 2) then
-      call add_problem(problems, 0, "a table needs two points at least", "rate1:factor1 "// &
-          "rate2:factor2 ...")
-      return
-    end if
+    call check_table(values, "rate", "rates", "rate1:factor1 rate2:factor2 ...", problems)
+    if (size(place) < 2) return
     if (values(place(1))%abscissa < 0.0_wp) call add_problem(problems, place(1), &
         "the rate is negative", "a rate in 1/s")
     if (value_of(values, "logarithm", 1.0_wp) > 0.5_wp .and. .not. values(place(1))%abscissa &
@@ -70,9 +68,6 @@ contains
         "positive rates; or logarithm=0")
     do i = 2, size(place)
       associate (now => values(place(i)), before => values(place(i - 1)))
-        if (.not. now%abscissa > before%abscissa) call add_problem(problems, place(i), &
-            "the rate "//to_text(now%abscissa)//" is not larger than the one before", &
-            "rates that rise")
         if (now%value < before%value) call add_problem(problems, place(i), &
             "the factor falls to "//to_text(now%value), "factors that do not fall")
       end associate

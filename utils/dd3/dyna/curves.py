@@ -92,7 +92,7 @@ class Curves:
         least = min(rates, key=lambda rate: rate[0])
         for _, label, row in rates:
             if row is not least[2]:
-                row.drop("the curve of the lowest strain rate is taken; rates are not available")
+                row.drop("the curve of the lowest strain rate is taken")
                 if label in self.cards and label != least[1]:
                     self.cards[label].leave("the curve of the lowest strain rate of its table is taken")
         return least[1]
