@@ -279,7 +279,7 @@ def little_memory_for_the_solver(program, directory):
 
 
 def full_disk_of_the_solver(program, directory):
-    """Test factors that MUMPS cannot write: E235."""
+    """Test factors that MUMPS cannot write, of more than 8 MB: E235."""
     listed = subprocess.check_output([program, "--help", "method"], text=True, timeout=60)
     if re.search(r"^  mumps .*; not in this build", listed, re.MULTILINE):
         print("MUMPS is not in this build: full_disk_of_the_solver is skipped")
@@ -290,7 +290,7 @@ def full_disk_of_the_solver(program, directory):
 
     def limit():
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-        resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 20, 1 << 20))
+        resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 23, 1 << 23))
 
     done = subprocess.run([program, "--threads", "1", "--output", directory / "out", deck], capture_output=True,
                           text=True, timeout=100, check=False, preexec_fn=limit)
