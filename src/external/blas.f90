@@ -141,8 +141,9 @@ contains
       argument(i) = c_loc(text(1, i))
     end do
     path = c_null_char
-    if (posix_readlink("/proc/self/exe"//c_null_char, path, size(path, kind=c_size_t) - 1) > 0) &
-        ignored = posix_execv(path, argument)
+    if (posix_readlink("/proc/self/exe"//c_null_char, path, size(path, kind=c_size_t) - 1) > 0) then
+      ignored = posix_execv(path, argument)
+    end if
   end subroutine begin_again
 
 end module dd3_external_blas

@@ -92,8 +92,8 @@ def swift(units: Units, law: Law, values: tuple[float, float, float], place: str
 def by_curve(deck: Deck, number: int, units: Units, law: Law, place: str) -> str:
     """Return hardening by points of plastic strain and flow stress."""
     if number in deck.curves.tables:
-        law.notes.append("hardening: the curve of the lowest strain rate; the others are taken of *MAT_024 with VP = 1, two to "
-                         "eight curves that do not cross, rates above 0")
+        law.notes.append("hardening: the curve of the lowest strain rate; others are taken of *MAT_024 with VP = 1, "
+                         f"two to {MOST_CURVES} curves that do not cross, rates above 0")
     return "table " + points_of(deck.curves.get(number, place), units, law)
 
 
