@@ -21,7 +21,7 @@ Every deck of cases/ and bad_input/ is a case or is named in a file beside it, a
 `--program`, but for those of benchmark/, build/ and utils/, says what it is; a file that does not is an error.
 
 Tests with the label `slow` are divided into parts by labels `part_0`, `part_1`, ...; utils/run_tests.sh runs one of
-them, chosen by the commit. `cost` is their time in seconds on one processor, by default `timeout`.
+them, chosen by the commit. `cost` is their time in seconds beside another test, by default `timeout`.
 """
 import json
 import pathlib
@@ -30,7 +30,7 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 BAD = HERE / "bad_input"
 SECONDS = 300  # default of `timeout`
-BUDGET = 600  # seconds of a part of the slow tests
+BUDGET = 300  # seconds of a part of the slow tests
 OTHERS = ("benchmark", "build", "utils", HERE.name)  # folders of scripts that say nothing
 
 

@@ -4,7 +4,7 @@
 #
 #   utils/run_tests.sh          the optimised build, the debug build (bounds checks, floating-point traps) and, where
 #                               PETSc is installed, the build for several processes; of the slow tests a part that takes
-#                               ten minutes at most, chosen by the hash of the commit
+#                               five minutes at most, chosen by the hash of the commit
 #   utils/run_tests.sh --slow   all slow tests
 #
 # A run that leaves files which git shows, or files fort.* anywhere, has a failed test `files_left`.

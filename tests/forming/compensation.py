@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 #: {"name": "forming_compensation_hat", "arguments": ["hat"], "labels": ["slow"], "timeout": 1200, "cost": 120}
 #: {"name": "forming_compensation_clamped", "arguments": ["clamped"], "labels": ["slow"], "timeout": 1200, "cost": 60}
-#: {"name": "forming_compensation_rail", "arguments": ["rail"], "labels": ["slow"], "timeout": 3600, "cost": 600}
+#: {"name": "forming_compensation_rail", "arguments": ["rail"], "labels": ["slow"], "timeout": 3600,
+#:  "cost": 300, "processors": 2}
 """Tools that are corrected for springback.
 
     compensation.py hat --program build/release/dd3imp --work build/compensation
@@ -58,7 +59,7 @@ def compensate_rail(options):
     rail = copied(options.work, "rail")
     process = read_process(rail / "rail.toml")
     process.operations[0].settings.update(divisions="60 36 1", levels=0)
-    found = compensate.compensate(options.program, process, "tools", 2, 0.1, 1.0, [], None, half_turn=True)
+    found = compensate.compensate(options.program, process, "tools", 2, 0.1, 1.0, [], None, threads=2, half_turn=True)
     largest, rms = min(found)
     check(largest <= found[0][0] / 4 and rms <= found[0][1] / 4, f"rail: {found}")
     steps = sorted(path.name for path in (rail / "rail.compensate").glob("*.step"))

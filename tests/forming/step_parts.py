@@ -1,11 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-#: {"name": "forming_step_parts", "labels": ["slow"], "timeout": 1800, "cost": 420}
+#: {"name": "forming_step_rail", "arguments": ["rail"], "labels": ["slow"], "timeout": 1800, "cost": 150}
+#: {"name": "forming_step_cup", "arguments": ["cup"], "labels": ["slow"], "timeout": 1800, "cost": 150}
+#: {"name": "forming_step_panel", "arguments": ["panel"], "labels": ["slow"], "timeout": 1800, "cost": 150}
 """Draw parts that are given by STEP files alone: tools and input file by dd3 tool, then the run to its end.
 
-  step_parts.py --program build/release/dd3imp --work build/step_parts [--defaults]
+  step_parts.py cup panel rail --program build/release/dd3imp --work build/step_parts [--defaults]
 
-With --defaults the elements are those of the input files that dd3 tool writes, without it fewer. It prints patches, seconds, increments, iterations and the largest thinning of each.
+With --defaults the elements are those of the input files that dd3 tool writes, without it fewer. It prints patches,
+seconds, increments, iterations and the largest thinning of each.
 """
 import re
 import subprocess
@@ -39,13 +42,15 @@ def made(folder, name):
 def main():
     """Make, run, and check the parts."""
     parser = parser_of_runs(__doc__)
+    parser.add_argument("parts", nargs="+", choices=PARTS)
     parser.add_argument("--defaults", action="store_true", help="the elements of the written input files")
     options = parser.parse_args()
     folder = options.work
     subprocess.run([sys.executable, ROOT / "input_files" / "parts" / "step_files.py", folder], check=True)
     failed = 0
     print("part | patches | s | elements | increments | iterations | thinning | s")
-    for name, (_, _, _, most_punch, most_die, travel) in PARTS.items():
+    for name in options.parts:
+        *_, most_punch, most_die, travel = PARTS[name]
         report, seconds = made(folder, name)
         punch, die, _ = (int(number) for number in re.findall(r"made of +(\d+) patch", report))
         found = float(re.search(r"travel +([\d.]+)", report)[1])

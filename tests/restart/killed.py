@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 #: {"name": "restart_killed", "arguments": ["--kills", "3"]}
-#: {"name": "restart_killed_often", "arguments": ["--kills", "20", "--fields", "100"], "labels": ["case", "slow"],
-#:  "timeout": 3600, "cost": 240}
+#: {"name": "restart_killed_often", "arguments": ["--kills", "10", "--fields", "50"], "labels": ["case", "slow"],
+#:  "timeout": 3600, "cost": 300}
 """Runs that are killed and continued: their results are those of a run that is not, bit for bit.
 
     killed.py --program build/release/dd3imp --work build/killed --kills 3
