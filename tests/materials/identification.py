@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-#: {"labels": ["utils"], "timeout": 900}
+#: {"labels": ["utils", "slow"], "timeout": 900, "cost": 110}
 """Check dd3 identify and dd3 fit.
 
     identification.py --program build/release/dd3imp

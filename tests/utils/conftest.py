@@ -10,6 +10,10 @@ def pytest_addoption(parser):
     parser.addoption("--program", type=Path, help="the program dd3imp")
 
 
+def pytest_configure(config):
+    config.addinivalue_line("markers", "slow: run by tests/slow_utils.py alone")
+
+
 @pytest.fixture(scope="session")
 def program(request):
     """Return the path of the program."""

@@ -89,6 +89,7 @@ def test_finished_run(tmp_path):
     assert found.lines and all((bead.points[:, 1] > -1).all() for bead in found.lines)
 
 
+@pytest.mark.slow
 def test_input_file(tmp_path, program):
     """Check the beads of a tray in its input file, which the program takes, and that a round pan has none."""
     write(tmp_path, ["own_flange", "pan"])

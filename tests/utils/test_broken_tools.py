@@ -9,6 +9,7 @@ from unittest import mock
 
 import gmsh
 import numpy as np
+import pytest
 from scipy.spatial import Delaunay, cKDTree
 from test_tool_surfaces import MESHES, box_distance, convert, die_triangles, make_cad, points_of, read, write_stl
 
@@ -188,6 +189,7 @@ def test_limits():
         assert (done.returncode, done.stderr.strip()) == (code, words), (body, done)
 
 
+@pytest.mark.slow
 def test_cut_cad(tmp_path):
     """Check CAD files that are cut off or damaged: OpenCASCADE does not end reading half a BREP text."""
     make_cad(tmp_path)

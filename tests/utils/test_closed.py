@@ -41,7 +41,8 @@ def test_side(folder, name):
     assert abs(area / plain - 1) < 1e-6 and rims == plain_rims, (area, plain, rims, plain_rims)
 
 
-@pytest.mark.parametrize("name", ["u_section", "cup", "tray", "slotted", "notched_lid"])
+@pytest.mark.parametrize("name", ["tray", *(pytest.param(name, marks=pytest.mark.slow)
+                                           for name in ("u_section", "cup", "slotted", "notched_lid"))])
 def test_tools(folder, tmp_path, name):
     """Check the tools against those of the part without openings."""
     said = call("tool", folder / f"{name}.step", tmp_path / "own", "--flange", 20)
@@ -93,7 +94,7 @@ def test_folded(tmp_path):
         assert "bent along lines in different directions" in why(reading.shape, upper, corner)
 
 
-@pytest.mark.parametrize("radius", [3, 5, 0])  # with 5 mm the floor ends at the corner in a point
+@pytest.mark.parametrize("radius", [3, *(pytest.param(radius, marks=pytest.mark.slow) for radius in (5, 0))])  # with 5 mm the floor ends at the corner in a point
 def test_open_corners(tmp_path, radius):
     """Check that walls and bends of a folded cover go on round its open corners in the tools, by the largest radius
     that leaves the walls as they are, at one distance from each other; and that the rim of the part lies on them."""

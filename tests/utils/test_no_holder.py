@@ -63,6 +63,7 @@ def test_no_strips():
         no_holder.continued(corner, WIDTH + 1.0)
 
 
+@pytest.mark.slow
 def test_panel(tmp_path, program):
     """Check the tools of a panel on a saddle: both sides of it in the closed press, wider than the blank, smooth at the
     rim, and an input file without a holder that the program takes."""

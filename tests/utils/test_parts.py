@@ -153,6 +153,7 @@ def test_units():
     assert unit_of_iges([]) == "none"
 
 
+@pytest.mark.slow
 def test_tools(folder, tmp_path):
     """Check what `dd3 tool` takes from the reading of a part: thickness, direction, refusals before any tool is made."""
     said = call("tool", folder / "tilted_tray.step", tmp_path / "tilted", "--shoulder", 4, "--flange", 15)

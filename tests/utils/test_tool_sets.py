@@ -75,6 +75,7 @@ def made(parts, name, target, *words, **more):
                 "--shoulder", SHOULDER, "--flange", FLANGE, *words, **more)
 
 
+@pytest.mark.slow
 def test_cup(parts, tmp_path, program):
     """Check the tools of a round cup against closed forms, and that the program takes them."""
     for side in ("punch", "die"):
