@@ -45,7 +45,7 @@ contains
     integer, intent(in) :: order(:)
 
     integer, allocatable :: rank(:)
-    integer :: i, k, n, n_block, next, first
+    integer :: i, k, n, n_block, next
 
     n = size(order)
     allocate (rank(matrix%n), source=0)
@@ -61,14 +61,13 @@ contains
     if (allocated(self%source)) deallocate (self%source, self%scale)
     allocate (self%source(n_block))
     allocate (self%scale(3, n), source=0.0_wp)
-    allocate (self%matrix%row_start(n + 1), self%matrix%diagonal(n), self%matrix%column(n_block))
+    allocate (self%matrix%row_start(n + 1), self%matrix%diagonal(n), source=0)
+    allocate (self%matrix%column(n_block))
     allocate (self%matrix%value(3, 3, merge(n_block, 0, self%has_values)), source=0.0_wp)
     self%matrix%n = n
     next = 1
     do i = 1, n
-      first = next
-      self%matrix%row_start(i) = first
-      self%matrix%diagonal(i) = 0
+      self%matrix%row_start(i) = next
       if (.not. holds_row(matrix, order(i))) cycle
       do k = matrix%row_start(order(i)), matrix%row_start(order(i) + 1) - 1
         if (rank(matrix%column(k)) == 0) cycle
@@ -76,33 +75,57 @@ contains
         self%source(next) = k
         next = next + 1
       end do
-      call sort_pairs(self%matrix%column(first:next - 1), self%source(first:next - 1))
-      self%matrix%diagonal(i) = first - 1 + findloc(self%matrix%column(first:next - 1), i, dim=1)
     end do
     self%matrix%row_start(n + 1) = next
+    call sort_rows(n, n_block, self%matrix%row_start, self%matrix%column, self%source)
+    do i = 1, n
+      associate (first => self%matrix%row_start(i), last => self%matrix%row_start(i + 1) - 1)
+        self%matrix%diagonal(i) = first - 1 + findloc(self%matrix%column(first:last), i, dim=1)
+      end associate
+    end do
     call own_rows(self%matrix, self%first, self%last)
   end subroutine scaled_system_setup
 
-  !> Sort items in ascending order of their keys (insertion sort).
-  pure subroutine sort_pairs(key, item)
-    integer, intent(inout) :: key(:), item(:)
+  !> Sort the blocks of each row in ascending order of their columns: they are put into lists of the
+  !> columns, and back into the rows one column after another. A rigid tool that is pressed has a row
+  !> with the columns of all points it touches.
+  pure subroutine sort_rows(n, n_block, row_start, column, source)
+    integer, intent(in) :: n, n_block, row_start(n + 1)
+    integer, intent(inout) :: column(n_block), source(n_block)
 
-    integer :: i, j, moved_key, moved_item
+    integer, allocatable :: row(:), block(:)
+    integer :: start(n + 1), next(n), i, j, k
 
-    do i = 2, size(key)
-      moved_key = key(i)
-      moved_item = item(i)
-      j = i - 1
-      do while (j >= 1)
-        if (key(j) <= moved_key) exit
-        key(j + 1) = key(j)
-        item(j + 1) = item(j)
-        j = j - 1
-      end do
-      key(j + 1) = moved_key
-      item(j + 1) = moved_item
+    allocate (row(n_block), block(n_block))
+    start = 0
+    do k = 1, n_block
+      start(column(k) + 1) = start(column(k) + 1) + 1
     end do
-  end subroutine sort_pairs
+    start(1) = 1
+    do j = 1, n
+      start(j + 1) = start(j) + start(j + 1)
+    end do
+    next = start(:n)
+    do i = 1, n
+      do k = row_start(i), row_start(i + 1) - 1
+        associate (place => next(column(k)))
+          row(place) = i
+          block(place) = source(k)
+          place = place + 1
+        end associate
+      end do
+    end do
+    next = row_start(:n)
+    do j = 1, n
+      do k = start(j), start(j + 1) - 1
+        associate (place => next(row(k)))
+          column(place) = j
+          source(place) = block(k)
+          place = place + 1
+        end associate
+      end do
+    end do
+  end subroutine sort_rows
 
   !> Copy and scale the values of a matrix of the pattern.
   subroutine scaled_system_fill(self, matrix, verdict)

@@ -9,6 +9,7 @@
 module dd3_model_sheet_turn
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : largest_over_ranks, this_rank
+  use dd3_base_threads, only : least_nodes, threads_for
   use dd3_linalg_tensor, only : cross
   use dd3_model_configuration, only : configuration_t
   use dd3_model_element_columns, only : element_columns_t, n_corner, new_element_columns
@@ -29,6 +30,8 @@ module dd3_model_sheet_turn
   integer, parameter :: n_part = 4
   !> Ratio of the edges up to which both directions have one length.
   real(wp), parameter :: square = 1.1_wp
+  !> Faces that a thread takes at a time.
+  integer, parameter :: chunk = 32
 
 contains
 
@@ -106,26 +109,34 @@ contains
 
     type(element_columns_t) :: quad
     real(wp), allocatable :: of_quad(:)
+    real(wp) :: of_face(size(model%contact_face))
     integer :: f, tool, rank
 
     rank = this_rank()
     call new_element_columns(quad, model)
     allocate (of_quad(quad%n), source=0.0_wp)
+    of_face = 0.0_wp
     do tool = 1, model%n_tool
       if (.not. model%phase(state%phase)%acts(tool)) cycle
-      do f = 1, size(model%contact_face)
+      !$omp parallel do num_threads(threads_for(size(of_face), least_nodes)) &
+      !$omp& schedule(dynamic, chunk)
+      do f = 1, size(of_face)
         associate (face => model%contact_face(f))
           if (.not. wanted(model%face%element(face))) cycle
           if (.not. all(model%member(tool, model%face%node(:, face)))) cycle
           if (model%part%divided) then
             if (model%part%owner(model%face%element(face)) /= rank) cycle
           end if
-          associate (largest => of_quad(quad%of_element(model%face%element(face))))
-            call raise_turn(largest, field(tool), state%placement(tool), &
-                state%x(:, model%face%corner(:, face)), ahead*sqrt(1.0_wp + sliding**2), rotation)
-          end associate
+          call raise_turn(of_face(f), field(tool), state%placement(tool), &
+              state%x(:, model%face%corner(:, face)), ahead*sqrt(1.0_wp + sliding**2), rotation)
         end associate
       end do
+      !$omp end parallel do
+    end do
+    do f = 1, size(of_face)
+      associate (largest => of_quad(quad%of_element(model%face%element(model%contact_face(f)))))
+        largest = max(largest, of_face(f))
+      end associate
     end do
     call largest_over_ranks(size(of_quad), of_quad)
     turn = merge(of_quad(quad%of_element), 0.0_wp, wanted)

@@ -7,6 +7,7 @@
 module dd3_report_tool_depth
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : broadcast_reals, rank_of_smallest, this_rank
+  use dd3_base_threads, only : least_nodes, threads_for
   use dd3_linalg_tensor, only : cross
   use dd3_model_contact_layer, only : deflection_at
   use dd3_model_contact_points, only : points_of_face
@@ -46,6 +47,11 @@ module dd3_report_tool_depth
     !> Deepest point, in the frame of the tool, mm.
     real(wp) :: x(3) = 0.0_wp
   end type tool_depth_t
+
+  !$omp declare reduction(deeper: tool_depth_t: omp_out = deeper(omp_out, omp_in)) &
+  !$omp& initializer(omp_priv = omp_orig)
+  !> Faces that a thread takes at a time.
+  integer, parameter :: chunk = 32
 
   !> Part of a face of the sheet between four contact points, in the frame of a tool.
   type :: face_t
@@ -103,6 +109,8 @@ contains
 
     rank = this_rank()
     self%depth = slight_depth*model%thickness
+    !$omp parallel do num_threads(threads_for(size(model%contact_face), least_nodes)) &
+    !$omp& schedule(dynamic, chunk) private(f) reduction(deeper: self)
     do k = 1, size(model%contact_face)
       f = model%contact_face(k)
       if (model%part%owner(model%face%element(f)) /= rank) cycle
@@ -113,9 +121,19 @@ contains
         call probe_divided_face(self, model, state, tool, k)
       end if
     end do
+    !$omp end parallel do
     if (self%face == 0) self%depth = 0.0_wp
     if (model%part%divided) call share_deepest(self)
   end function measure_tool_depth
+
+  !> Return the larger of two depths; of equal ones that of the face with the lower number.
+  pure type(tool_depth_t) function deeper(a, b)
+    type(tool_depth_t), intent(in) :: a, b
+
+    deeper = a
+    if (b%depth > a%depth .or. (b%depth >= a%depth .and. b%face > 0 .and. &
+        (b%face < a%face .or. a%face == 0))) deeper = b
+  end function deeper
 
   !> Give all ranks the largest depth; of equal ones that of the face with the lowest number.
   subroutine share_deepest(self)
