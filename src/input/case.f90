@@ -17,7 +17,7 @@ module dd3_input_case
   use dd3_settings_until, only : until_spec_t
   implicit none
   private
-  public :: case_t, blank_spec_t, mesh_spec_t, start_spec_t, trim_spec_t
+  public :: case_t, blank_spec_t, region_spec_t, mesh_spec_t, start_spec_t, trim_spec_t
   public :: material_of_t, node_set_spec_t
   public :: law_spec_t, law_parameter_t, material_spec_t
   public :: tool_spec_t, drawbead_spec_t, contact_spec_t, boundary_spec_t
@@ -59,6 +59,24 @@ module dd3_input_case
     integer :: material = 0
     type(block_t) :: source
   end type blank_spec_t
+
+  !> A part of a blank, of another thickness or material.
+  type :: region_spec_t
+    !> Vertices of its weld line or outline seen along z, x y in turn, mm; size 0 if they are in a
+    !> file.
+    real(wp), allocatable :: point(:)
+    !> Path of the file of vertices, relative to the working directory.
+    character(len=:), allocatable :: file
+    !> Where it lies: left or right of the line, or inside the outline.
+    character(len=:), allocatable :: side
+    !> mm; 0 for that of the blank.
+    real(wp) :: thickness = 0.0_wp
+    !> Face with the step to the thickness of the blank: top, bottom or both.
+    character(len=:), allocatable :: step
+    !> Position in `case%material`; 0 for that of the blank.
+    integer :: material = 0
+    type(block_t) :: source
+  end type region_spec_t
 
   !> Material of an element set.
   type :: material_of_t
@@ -398,6 +416,7 @@ module dd3_input_case
     !> Lines of the title.
     type(text_t), allocatable :: title(:)
     type(blank_spec_t), allocatable :: blank(:)
+    type(region_spec_t), allocatable :: region(:)
     type(mesh_spec_t), allocatable :: mesh(:)
     type(start_spec_t), allocatable :: start(:)
     type(trim_spec_t), allocatable :: trim(:)

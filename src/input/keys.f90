@@ -8,10 +8,9 @@ module dd3_input_keys
   use dd3_settings_adaptive, only : most_levels
   implicit none
   private
-  public :: blank_keys, mesh_keys, start_keys, trim_keys, set_keys, material_keys, tool_keys, &
-      drawbead_keys, &
-      contact_keys, boundary_keys, limits_keys, newton_keys, solver_keys, phase_keys, &
-      history_keys, output_keys, point_keys
+  public :: blank_keys, region_keys, mesh_keys, start_keys, trim_keys, set_keys, &
+      material_keys, tool_keys, drawbead_keys, contact_keys, boundary_keys, limits_keys, &
+      newton_keys, solver_keys, phase_keys, history_keys, output_keys, point_keys
 
   !> Bound of the numbers that must not be negative.
   real(wp), parameter :: zero = 0.0_wp
@@ -51,6 +50,23 @@ contains
       row("material", kind_name, "", "", "material", form="material")]
     key = [key, adaptive_keys()]
   end function blank_keys
+
+  function region_keys() result(key)
+    type(parameter_t), allocatable :: key(:)
+
+    key = [ &
+      row("points", kind_reals, "mm", "-", "vertices of a weld line, or of the outline, seen "// &
+          "along z, x y in turn", count=0), &
+      row("file", kind_text, "", "-", "file of the vertices, x y in each line"), &
+      row("side", kind_name, "", "", "place of the region: left or right of the line, which "// &
+          "goes on beyond its ends, or inside the outline", choices="left right inside"), &
+      row("thickness", kind_real, "mm", "-", "thickness of the region; default: that of the "// &
+          "blank", lower=zero, lower_open=.true.), &
+      row("step", kind_name, "", "-", "face of the blank with the step of the thickness; "// &
+          "default: top", choices="top bottom both"), &
+      row("material", kind_name, "", "-", "material of the region; default: that of the blank", &
+          form="material")]
+  end function region_keys
 
   function mesh_keys() result(key)
     type(parameter_t), allocatable :: key(:)
