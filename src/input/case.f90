@@ -8,6 +8,7 @@ module dd3_input_case
   use dd3_base_error, only : location_t
   use dd3_base_text, only : text_t
   use dd3_input_block, only : block_t, deck_t
+  use dd3_input_cushion_case, only : tool_pin_t, tool_spacer_t, tool_stroke_t
   use dd3_input_point_case, only : gradient_values, point_goal_t, point_spec_t
   use dd3_settings_adaptive, only : adaptive_spec_t
   use dd3_settings_limits, only : limits_spec_t
@@ -23,6 +24,7 @@ module dd3_input_case
   public :: tool_spec_t, drawbead_spec_t, contact_spec_t, boundary_spec_t
   public :: phase_spec_t, history_spec_t
   public :: tool_gap_t, tool_name_t, tool_tilt_t, tool_turn_t, tool_vector_t
+  public :: tool_pin_t, tool_spacer_t, tool_stroke_t
   public :: displace_spec_t, free_spec_t
   public :: load_spec_t, motion_spec_t, pressure_spec_t
   public :: blank_sets, set_plane, set_box, set_nodes, set_near
@@ -380,6 +382,9 @@ module dd3_input_case
     type(tool_gap_t), allocatable :: gap(:)
     type(tool_turn_t), allocatable :: turn(:)
     type(tool_tilt_t), allocatable :: tilt(:)
+    type(tool_pin_t), allocatable :: pin(:)
+    type(tool_stroke_t), allocatable :: stroke(:)
+    type(tool_spacer_t), allocatable :: spacer(:)
     type(displace_spec_t), allocatable :: displace(:)
     type(free_spec_t), allocatable :: free(:)
     type(load_spec_t), allocatable :: load(:)

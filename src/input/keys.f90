@@ -362,6 +362,18 @@ contains
           "the tool's file, at which the force acts, and stiffness of its support against tilt", &
           repeatable=.true., &
           form="tool number number number number"), &
+      row("pin", kind_other, "mm", "-", "pin that carries a share of the force on a pressed "// &
+          "tool, which tilts on its pins: place in the coordinates of the tool's file, share; "// &
+          "the sum of the shares of a tool counts as 1", repeatable=.true., &
+          form="tool number number number number"), &
+      row("stroke_table", kind_other, "mm", "-", "pressed tool, stroke by which it has been "// &
+          "pushed back since it is pressed, and factor on its force there, at each pin by its "// &
+          "own stroke, in pairs; constant beyond the ends", repeatable=.true., &
+          form="tool number..."), &
+      row("spacer", kind_other, "mm, N/mm", "-", "spacer between a pressed tool and another "// &
+          "one that is not: the gap between the tools along z at which it touches, its "// &
+          "stiffness, and x and y of its place in the coordinates of the pressed tool's file", &
+          repeatable=.true., form="tool tool number number number number"), &
       row("release", kind_other, "", "-", &
           "tool that is withdrawn from the sheet over the phase, with its contact, and has "// &
           "none afterwards until a later phase names it again", &
