@@ -8,6 +8,7 @@ module dd3_input_case
   use dd3_base_error, only : location_t
   use dd3_base_text, only : text_t
   use dd3_input_block, only : block_t, deck_t
+  use dd3_input_cushion_case, only : tool_pin_t, tool_spacer_t, tool_stroke_t
   use dd3_input_point_case, only : gradient_values, point_goal_t, point_spec_t
   use dd3_settings_adaptive, only : adaptive_spec_t
   use dd3_settings_limits, only : limits_spec_t
@@ -17,12 +18,13 @@ module dd3_input_case
   use dd3_settings_until, only : until_spec_t
   implicit none
   private
-  public :: case_t, blank_spec_t, mesh_spec_t, start_spec_t, trim_spec_t
+  public :: case_t, blank_spec_t, region_spec_t, mesh_spec_t, start_spec_t, trim_spec_t
   public :: material_of_t, node_set_spec_t
   public :: law_spec_t, law_parameter_t, material_spec_t
   public :: tool_spec_t, drawbead_spec_t, contact_spec_t, boundary_spec_t
   public :: phase_spec_t, history_spec_t
   public :: tool_gap_t, tool_name_t, tool_tilt_t, tool_turn_t, tool_vector_t
+  public :: tool_pin_t, tool_spacer_t, tool_stroke_t
   public :: displace_spec_t, free_spec_t
   public :: load_spec_t, motion_spec_t, pressure_spec_t
   public :: blank_sets, set_plane, set_box, set_nodes, set_near
@@ -59,6 +61,24 @@ module dd3_input_case
     integer :: material = 0
     type(block_t) :: source
   end type blank_spec_t
+
+  !> A part of a blank, of another thickness or material.
+  type :: region_spec_t
+    !> Vertices of its weld line or outline seen along z, x y in turn, mm; size 0 if they are in a
+    !> file.
+    real(wp), allocatable :: point(:)
+    !> Path of the file of vertices, relative to the working directory.
+    character(len=:), allocatable :: file
+    !> Where it lies: left or right of the line, or inside the outline.
+    character(len=:), allocatable :: side
+    !> mm; 0 for that of the blank.
+    real(wp) :: thickness = 0.0_wp
+    !> Face with the step to the thickness of the blank: top, bottom or both.
+    character(len=:), allocatable :: step
+    !> Position in `case%material`; 0 for that of the blank.
+    integer :: material = 0
+    type(block_t) :: source
+  end type region_spec_t
 
   !> Material of an element set.
   type :: material_of_t
@@ -362,6 +382,9 @@ module dd3_input_case
     type(tool_gap_t), allocatable :: gap(:)
     type(tool_turn_t), allocatable :: turn(:)
     type(tool_tilt_t), allocatable :: tilt(:)
+    type(tool_pin_t), allocatable :: pin(:)
+    type(tool_stroke_t), allocatable :: stroke(:)
+    type(tool_spacer_t), allocatable :: spacer(:)
     type(displace_spec_t), allocatable :: displace(:)
     type(free_spec_t), allocatable :: free(:)
     type(load_spec_t), allocatable :: load(:)
@@ -398,6 +421,7 @@ module dd3_input_case
     !> Lines of the title.
     type(text_t), allocatable :: title(:)
     type(blank_spec_t), allocatable :: blank(:)
+    type(region_spec_t), allocatable :: region(:)
     type(mesh_spec_t), allocatable :: mesh(:)
     type(start_spec_t), allocatable :: start(:)
     type(trim_spec_t), allocatable :: trim(:)

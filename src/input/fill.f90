@@ -6,8 +6,8 @@ module dd3_input_fill
   use dd3_settings_accuracy, only : set_by_accuracy
   use dd3_input_block, only : block_t, deck_t
   use dd3_input_case, only : case_t, boundary_spec_t, drawbead_spec_t, history_spec_t, tool_spec_t
-  use dd3_input_fill_blank, only : fill_adaptive, fill_blank, fill_mesh, fill_set, &
-      fill_start, fill_trim
+  use dd3_input_fill_blank, only : fill_adaptive, fill_blank, fill_mesh, fill_region, &
+      fill_set, fill_start, fill_trim
   use dd3_input_fill_material, only : add_law, fill_material
   use dd3_input_fill_phase, only : fill_phase, fill_limits, fill_newton, fill_contact
   use dd3_input_fill_point, only : fill_point
@@ -79,6 +79,7 @@ contains
       call fill_adaptive(case%adaptive, deck%block(at(i)))
       case%blank(i)%material = position(deck, "material", deck%block(at(i))%word("material"))
     end do
+    call fill_regions(case, deck)
     call fill_meshes(case, deck)
     at = positions(deck, "start")
     allocate (case%start(size(at)))
@@ -119,6 +120,22 @@ contains
       call fill_boundary(case%boundary(i), deck%block(at(i)))
     end do
   end subroutine fill_model
+
+  !> Fill the regions of a blank, with the positions of their materials.
+  subroutine fill_regions(case, deck)
+    type(case_t), intent(inout) :: case
+    type(deck_t), intent(in) :: deck
+
+    integer, allocatable :: at(:)
+    integer :: i
+
+    at = positions(deck, "region")
+    allocate (case%region(size(at)))
+    do i = 1, size(at)
+      call fill_region(case%region(i), deck%block(at(i)))
+      case%region(i)%material = position(deck, "material", deck%block(at(i))%word("material"))
+    end do
+  end subroutine fill_regions
 
   !> Fill the meshes from files, with the positions of their materials.
   subroutine fill_meshes(case, deck)

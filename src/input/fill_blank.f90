@@ -4,12 +4,12 @@ module dd3_input_fill_blank
   use dd3_base_kinds, only : wp
   use dd3_input_block, only : block_t
   use dd3_input_case, only : blank_spec_t, mesh_spec_t, node_set_spec_t, start_spec_t, &
-      trim_spec_t, set_plane, set_box, set_nodes, set_near
+      region_spec_t, trim_spec_t, set_plane, set_box, set_nodes, set_near
   use dd3_input_text_file, only : resolve_path
   use dd3_settings_adaptive, only : adaptive_spec_t
   implicit none
   private
-  public :: fill_adaptive, fill_blank, fill_mesh, fill_start, fill_trim, fill_set
+  public :: fill_adaptive, fill_blank, fill_region, fill_mesh, fill_start, fill_trim, fill_set
 
 contains
 
@@ -32,6 +32,21 @@ contains
     blank%portion = block%word("portion")
     if (block%has("radius")) blank%size = [blank%radius, blank%radius, block%number("thickness")]
   end subroutine fill_blank
+
+  !> Fill a region; the position of its material is left to the caller.
+  subroutine fill_region(region, block)
+    type(region_spec_t), intent(inout) :: region
+    type(block_t), intent(in) :: block
+
+    region%source = block
+    region%point = block%numbers("points")
+    region%file = ""
+    if (block%has("file")) region%file = resolve_path(block%folder, block%word("file"))
+    region%side = block%word("side")
+    region%thickness = block%number("thickness")
+    region%step = "top"
+    if (block%has("step")) region%step = block%word("step")
+  end subroutine fill_region
 
   !> Fill the settings of the refinement of a sheet.
   subroutine fill_adaptive(adaptive, block)

@@ -5,7 +5,8 @@ module dd3_input_fill_phase
   use dd3_base_text, only : same_name
   use dd3_settings_accuracy, only : set_by_accuracy
   use dd3_input_block, only : block_t
-  use dd3_input_case, only : case_t, phase_spec_t, contact_spec_t, tool_name_t, tool_vector_t
+  use dd3_input_case, only : case_t, phase_spec_t, contact_spec_t, tool_name_t, &
+      tool_pin_t, tool_spacer_t, tool_tilt_t, tool_vector_t
   use dd3_settings_limits, only : limits_spec_t, limit_spec_t
   use dd3_settings_newton, only : newton_spec_t
   use dd3_settings_until, only : until_spec_t, until_displacement, until_force
@@ -79,6 +80,8 @@ contains
     allocate (phase%hold(n_valid("hold")), phase%release(n_valid("release")))
     allocate (phase%move(n_valid("move")), phase%press(n_valid("press")))
     allocate (phase%gap(n_valid("gap")), phase%turn(n_valid("turn")), phase%tilt(n_valid("tilt")))
+    allocate (phase%pin(n_valid("pin")), phase%stroke(n_valid("stroke_table")))
+    allocate (phase%spacer(n_valid("spacer")))
     allocate (phase%displace(n_valid("displace") + n_valid("place")), phase%free(n_valid("free")))
     allocate (phase%load(n_valid("load")), phase%pressure(n_valid("pressure")))
     allocate (phase%motion(n_valid("rotate") + n_valid("bend")))
@@ -112,6 +115,15 @@ contains
             phase%tilt(i)%pivot = number(:3)
             phase%tilt(i)%stiffness = number(4)
             phase%tilt(i)%at = at
+          case ("pin")
+            phase%pin(i) = tool_pin_t(tool, number(:3), number(4), at)
+          case ("stroke_table")
+            phase%stroke(i)%tool = tool
+            phase%stroke(i)%table = number(:entry%n_number)
+            phase%stroke(i)%at = at
+          case ("spacer")
+            phase%spacer(i) = tool_spacer_t(tool, tool_position(case, entry%value(2)%text), &
+                number(1), number(2), number(3:4), at)
           case ("displace", "place")
             ! The places follow the displacements.
             if (entry%key == "place") i = i + n_valid("displace")
@@ -145,8 +157,23 @@ contains
         end associate
       end associate
     end do
+    do i = 1, size(case%tool)
+      if (any(phase%pin%tool == i)) phase%tilt = [phase%tilt, tilt_on_pins(pack(phase%pin, &
+          phase%pin%tool == i))]
+    end do
 
   contains
+
+    !> Return the tilt of a tool on its pins, about the point where their forces act.
+    pure type(tool_tilt_t) function tilt_on_pins(pin) result(tilt)
+      type(tool_pin_t), intent(in) :: pin(:)
+
+      integer :: k
+
+      tilt%tool = pin(1)%tool
+      tilt%at = pin(1)%at
+      tilt%pivot = [(sum(pin%share*pin%place(k)), k=1, 3)]/sum(pin%share)
+    end function tilt_on_pins
 
     !> Return the number of valid entries with a key, up to entry `last` if given.
     pure integer function n_valid(key, last)

@@ -8,10 +8,9 @@ module dd3_input_keys
   use dd3_settings_adaptive, only : most_levels
   implicit none
   private
-  public :: blank_keys, mesh_keys, start_keys, trim_keys, set_keys, material_keys, tool_keys, &
-      drawbead_keys, &
-      contact_keys, boundary_keys, limits_keys, newton_keys, solver_keys, phase_keys, &
-      history_keys, output_keys, point_keys
+  public :: blank_keys, region_keys, mesh_keys, start_keys, trim_keys, set_keys, &
+      material_keys, tool_keys, drawbead_keys, contact_keys, boundary_keys, limits_keys, &
+      newton_keys, solver_keys, phase_keys, history_keys, output_keys, point_keys
 
   !> Bound of the numbers that must not be negative.
   real(wp), parameter :: zero = 0.0_wp
@@ -51,6 +50,23 @@ contains
       row("material", kind_name, "", "", "material", form="material")]
     key = [key, adaptive_keys()]
   end function blank_keys
+
+  function region_keys() result(key)
+    type(parameter_t), allocatable :: key(:)
+
+    key = [ &
+      row("points", kind_reals, "mm", "-", "vertices of a weld line, or of the outline, seen "// &
+          "along z, x y in turn", count=0), &
+      row("file", kind_text, "", "-", "file of the vertices, x y in each line"), &
+      row("side", kind_name, "", "", "place of the region: left or right of the line, which "// &
+          "goes on beyond its ends, or inside the outline", choices="left right inside"), &
+      row("thickness", kind_real, "mm", "-", "thickness of the region; default: that of the "// &
+          "blank", lower=zero, lower_open=.true.), &
+      row("step", kind_name, "", "-", "face of the blank with the step of the thickness; "// &
+          "default: top", choices="top bottom both"), &
+      row("material", kind_name, "", "-", "material of the region; default: that of the blank", &
+          form="material")]
+  end function region_keys
 
   function mesh_keys() result(key)
     type(parameter_t), allocatable :: key(:)
@@ -346,6 +362,18 @@ contains
           "the tool's file, at which the force acts, and stiffness of its support against tilt", &
           repeatable=.true., &
           form="tool number number number number"), &
+      row("pin", kind_other, "mm", "-", "pin that carries a share of the force on a pressed "// &
+          "tool, which tilts on its pins: place in the coordinates of the tool's file, share; "// &
+          "the sum of the shares of a tool counts as 1", repeatable=.true., &
+          form="tool number number number number"), &
+      row("stroke_table", kind_other, "mm", "-", "pressed tool, stroke by which it has been "// &
+          "pushed back since it is pressed, and factor on its force there, at each pin by its "// &
+          "own stroke, in pairs; constant beyond the ends", repeatable=.true., &
+          form="tool number..."), &
+      row("spacer", kind_other, "mm, N/mm", "-", "spacer between a pressed tool and another "// &
+          "one that is not: the gap between the tools along z at which it touches, its "// &
+          "stiffness, and x and y of its place in the coordinates of the pressed tool's file", &
+          repeatable=.true., form="tool tool number number number number"), &
       row("release", kind_other, "", "-", &
           "tool that is withdrawn from the sheet over the phase, with its contact, and has "// &
           "none afterwards until a later phase names it again", &

@@ -4,6 +4,7 @@ module dd3_input_phase_check
   use dd3_base_kinds, only : wp
   use dd3_base_error, only : error_list_t, location_t
   use dd3_base_text, only : to_text
+  use dd3_input_cushion_check, only : check_cushions
   use dd3_input_case, only : case_t, phase_spec_t, tool_gap_t, tool_vector_t
   use dd3_input_phase_tables, only : check_tables
   use dd3_settings_until, only : until_never
@@ -43,6 +44,7 @@ contains
       call check_until(case, case%phase(i), motion, errors)
       call check_motions(case%phase(i), errors)
       call check_tilts(case, case%phase(i), motion == pressed, tilting, errors)
+      call check_cushions(case, case%phase(i), motion == pressed, force, errors)
       turned = turned .or. tilting
       call check_turns(case, case%phase(i), turned, errors)
       call check_bends(case, i, errors)

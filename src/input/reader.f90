@@ -9,6 +9,7 @@ module dd3_input_reader
   use dd3_input_cross_check, only : cross_check
   use dd3_input_deck, only : read_deck
   use dd3_input_drawbead_check, only : check_drawbeads
+  use dd3_input_region_check, only : check_regions
   use dd3_input_fill, only : fill_case
   use dd3_input_phase_check, only : check_phases
   use dd3_input_point_check, only : check_points
@@ -43,6 +44,7 @@ contains
     if (deck%n_block > 0) then
       call cross_check(case, errors)
       call check_drawbeads(case, errors)
+      call check_regions(case, errors)
       call check_phases(case, errors)
       call check_points(case, errors)
     end if

@@ -5,7 +5,7 @@ module dd3_input_table
   use dd3_base_text, only : same_name, join
   use dd3_base_parameter, only : parameter_t
   use dd3_input_case, only : blank_sets
-  use dd3_input_keys, only : blank_keys, mesh_keys, start_keys, trim_keys, set_keys, &
+  use dd3_input_keys, only : blank_keys, region_keys, mesh_keys, start_keys, trim_keys, set_keys, &
       material_keys, tool_keys, drawbead_keys, contact_keys, boundary_keys, limits_keys, &
       newton_keys, solver_keys, &
       phase_keys, history_keys, output_keys, point_keys
@@ -46,6 +46,8 @@ contains
     call add(table, "blank", "named", "A structured blank. A box (size) has the node sets "// &
         join(blank_sets, " ")//", a round one (radius) x_min y_min rim z_min z_max all.", &
         blank_keys())
+    call add(table, "region", "named many", "A part of *BLANK, of another thickness or "// &
+        "material: a tailored blank.", region_keys())
     call add(table, "mesh", "named", "A mesh from a file. Its sets become node sets; z_min and "// &
         "z_max are the two faces of the sheet, all has all nodes.", mesh_keys())
     call add(table, "start", "once", "The sheet of another run, in place of *BLANK or *MESH, "// &

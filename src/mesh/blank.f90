@@ -6,6 +6,7 @@ module dd3_mesh_blank
   use dd3_base_kinds, only : wp
   use dd3_input_case, only : blank_spec_t, blank_sets
   use dd3_mesh_mesh, only : mesh_t
+  use dd3_mesh_weld_line, only : follow_lines, weld_line_t
   implicit none
   private
   public :: new_blank_mesh
@@ -13,18 +14,20 @@ module dd3_mesh_blank
 contains
 
   !> Build nodes, elements and node sets of a blank.
-  subroutine new_blank_mesh(mesh, blank, natural)
+  subroutine new_blank_mesh(mesh, blank, natural, line)
     type(mesh_t), intent(out) :: mesh
     type(blank_spec_t), intent(in) :: blank
     !> Natural coordinates of the element's nodes, each -1, 0 or 1, `(3, n_element_node)`; x, y, z
     !> of the blank are their axes.
     real(wp), intent(in) :: natural(:, :)
+    !> Weld lines, onto which the nearest node lines are moved; get these.
+    type(weld_line_t), intent(inout), optional :: line(:)
 
     integer, allocatable :: number(:, :, :)
 
     mesh%thickness = blank%size(3)
     call number_nodes(number, mesh%n_node, blank%divisions, nint(natural))
-    call place_nodes(mesh, blank, number)
+    call place_nodes(mesh, blank, line, number)
     call connect(mesh, blank%divisions, nint(natural), number)
     allocate (mesh%material(mesh%n_element), source=blank%material)
     call name_faces(mesh, number)
@@ -62,31 +65,55 @@ contains
   end subroutine number_nodes
 
   !> Compute the coordinates of the nodes.
-  subroutine place_nodes(mesh, blank, number)
+  subroutine place_nodes(mesh, blank, line, number)
     type(mesh_t), intent(inout) :: mesh
     type(blank_spec_t), intent(in) :: blank
+    type(weld_line_t), intent(inout), optional :: line(:)
     !> Number of the node at a grid point, 0 for none.
     integer, intent(in) :: number(0:, 0:, 0:)
 
-    real(wp), allocatable :: x(:), y(:), z(:), skew(:)
+    real(wp), allocatable :: plane(:, :, :), z(:)
     integer :: i, j, k
 
-    x = with_middles(blank%grading_x)
-    y = with_middles(blank%grading_y)
+    call place_in_plan(plane, blank, line)
     z = with_middles(blank%grading_z)
-    skew = with_middles(skew_of_lines(blank))
     allocate (mesh%x(3, mesh%n_node))
     do i = 0, ubound(number, 3)
       do j = 0, ubound(number, 2)
         do k = 0, ubound(number, 1)
           if (number(k, j, i) == 0) cycle
-          mesh%x(:, number(k, j, i)) = blank%origin &
-              + blank%size*[x(i + 1), y(j + 1), z(k + 1)] &
-              + [skew(i + 1)*(y(j + 1) - 0.5_wp), 0.0_wp, 0.0_wp]
+          mesh%x(:, number(k, j, i)) = [plane(:, i, j), blank%origin(3) + blank%size(3)*z(k + 1)]
         end do
       end do
     end do
   end subroutine place_nodes
+
+  !> Compute the grid in plan: skewed, then with node lines on the weld lines.
+  subroutine place_in_plan(plane, blank, line)
+    !> `(2, 0:2*n_x, 0:2*n_y)`, mm.
+    real(wp), allocatable, intent(out) :: plane(:, :, :)
+    type(blank_spec_t), intent(in) :: blank
+    type(weld_line_t), intent(inout), optional :: line(:)
+
+    real(wp) :: x(0:blank%divisions(1)), y(0:blank%divisions(2)), skew(0:blank%divisions(1))
+    integer :: i, j
+
+    x = blank%grading_x
+    y = blank%grading_y
+    skew = skew_of_lines(blank)
+    associate (n => blank%divisions)
+      allocate (plane(2, 0:2*n(1), 0:2*n(2)))
+      do j = 0, n(2)
+        do i = 0, n(1)
+          plane(:, 2*i, 2*j) = blank%origin(:2) + blank%size(:2)*[x(i), y(j)] &
+              + [skew(i)*(y(j) - 0.5_wp), 0.0_wp]
+        end do
+      end do
+      if (present(line)) call follow_lines(line, plane(:, ::2, ::2))
+      plane(:, ::2, 1::2) = 0.5_wp*(plane(:, ::2, :2*n(2) - 2:2) + plane(:, ::2, 2::2))
+      plane(:, 1::2, :) = 0.5_wp*(plane(:, :2*n(1) - 2:2, :) + plane(:, 2::2, :))
+    end associate
+  end subroutine place_in_plan
 
   !> Return the shift of the node lines along y at x(0:n): the difference in x between their ends,
   !> mm. The ends of the blank stay straight.

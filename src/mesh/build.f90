@@ -12,8 +12,10 @@ module dd3_mesh_build
   use dd3_mesh_blank, only : new_blank_mesh
   use dd3_mesh_inp_mesh, only : new_inp_mesh
   use dd3_mesh_mesh, only : mark_directions, mesh_t
+  use dd3_mesh_regions, only : new_weld_lines, set_regions
   use dd3_mesh_round_blank, only : new_round_mesh
   use dd3_mesh_select, only : add_set
+  use dd3_mesh_weld_line, only : weld_line_t
   implicit none
   private
   public :: new_mesh, add_sets
@@ -32,13 +34,22 @@ contains
     real(wp), intent(in) :: natural(:, :)
     type(error_list_t), intent(inout) :: errors
 
+    type(weld_line_t), allocatable :: line(:)
+    integer :: before
+
     if (size(case%mesh) > 0) then
       call new_inp_mesh(mesh, case%mesh(1), natural, errors)
-    else if (case%blank(1)%radius > 0.0_wp) then
+      return
+    end if
+    before = errors%count
+    call new_weld_lines(line, case, errors)
+    if (errors%count > before) return
+    if (case%blank(1)%radius > 0.0_wp) then
       call new_round_mesh(mesh, case%blank(1), natural)
     else
-      call new_blank_mesh(mesh, case%blank(1), natural)
+      call new_blank_mesh(mesh, case%blank(1), natural, line)
     end if
+    call set_regions(mesh, case, line, natural, errors)
   end subroutine new_mesh
 
   !> Add the node sets of the input to a mesh, and check what is prescribed for them.

@@ -50,6 +50,8 @@ module dd3_mesh_mesh
     type(mesh_set_t), allocatable :: set(:)
     !> Element sets of the mesh file.
     type(element_set_t), allocatable :: element_set(:)
+    !> Of the regions of a blank, for the log, a line each; not allocated without.
+    character(len=:), allocatable :: report
   contains
     procedure :: find_set
     procedure :: find_element_set

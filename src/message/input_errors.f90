@@ -120,6 +120,9 @@ contains
       row("E153", "cut of the sheet", "A curve of `*TRIM` is open, crosses another one, misses "// &
           "the sheet or is too small for its elements.", "Closed curves that are larger than "// &
           "the elements; a finer mesh; `along`, `keep`."), &
+      row("E154", "region of a blank", "A region has no elements, or its section and that "// &
+          "beside it have too little in common.", "A weld line within the blank; one `step` "// &
+          "for all regions."), &
       row("E156", "friction law without a coefficient", "`friction_law` is a factor on "// &
           "`friction`, which is zero or not given.", "`friction`; 1 if the factors of a table "// &
           "are coefficients."), &

@@ -242,6 +242,7 @@ contains
     character(len=*), intent(in) :: name
 
     logical :: held
+    integer :: k
 
     held = phase%active(tool) .and. .not. phase%pressed(tool)
     if (held .and. norm2(phase%move(:, tool)) <= 0.0_wp .and. phase%gap_other(tool) == 0 .and. &
@@ -251,6 +252,16 @@ contains
       call digest%add([phase%turn(tool)%centre, phase%turn(tool)%axis, phase%turn(tool)%angle])
     end if
     if (phase%tilts(tool)) call digest%add([phase%tilt(tool)%pivot, phase%tilt(tool)%stiffness])
+    associate (cushion => phase%cushion(tool))
+      if (allocated(cushion%share)) call digest%add([pack(cushion%place, .true.), cushion%share])
+      if (allocated(cushion%table)) call digest%add(pack(cushion%table, .true.))
+    end associate
+    do k = 1, size(phase%spacer)
+      associate (spacer => phase%spacer(k))
+        if (spacer%tool == tool) call digest%add([real(spacer%other, wp), spacer%stiffness, &
+            spacer%place, spacer%limit])
+      end associate
+    end do
     call digest%add([phase%pressed(tool), phase%active(tool), phase%withdrawn(tool), &
         phase%keeps_tool_load(tool)])
     call digest%add([phase%move(:, tool), phase%direction(:, tool)])

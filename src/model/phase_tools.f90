@@ -2,6 +2,7 @@
 !> What a phase does with the tools: moved, turned, pressed, withdrawn.
 module dd3_model_phase_tools
   use dd3_base_kinds, only : wp
+  use dd3_model_cushion, only : cushion_t, spacer_t
   use dd3_model_nodal_conditions, only : nodal_conditions_t
   use dd3_model_progress_table, only : interval, step, table_slope, table_value
   use dd3_model_tilt, only : tilt_t
@@ -25,6 +26,9 @@ module dd3_model_phase_tools
     logical, allocatable :: pressed(:)
     !> Tilt of the tools, of those that are pressed, `(n_tool)`.
     type(tilt_t), allocatable :: tilt(:)
+    !> Cushions of the tools, `(n_tool)`, and spacers between them.
+    type(cushion_t), allocatable :: cushion(:)
+    type(spacer_t), allocatable :: spacer(:)
     !> Force on the pressed tools at the end of the phase, `(3, n_tool)`, N; without meaning for
     !> those whose force the phase leaves unchanged, `(n_tool)`.
     real(wp), allocatable :: tool_load_end(:, :)

@@ -19,6 +19,8 @@ module dd3_model_tools_state
     real(wp), allocatable :: rotation(:, :, :), angle(:)
     !> Rotation from which the tilt is measured, `(3, 3, n_tool)`.
     real(wp), allocatable :: untilted(:, :, :)
+    !> Displacement at which their cushions have no stroke, `(3, n_tool)`, mm.
+    real(wp), allocatable :: rest(:, :)
     !> Force pressed on them, and that of the sheet on them with those of their draw-beads and
     !> fading ones, `(3, n_tool)`, N.
     real(wp), allocatable :: load(:, :), force(:, :)
@@ -45,6 +47,7 @@ contains
     associate (n => model%n_tool)
       allocate (self%displacement(3, n), self%centre(3, n), self%load(3, n), self%force(3, n), &
           source=0.0_wp)
+      allocate (self%rest(3, n), source=0.0_wp)
       allocate (self%angle(n), self%layer_offset(n), source=0.0_wp)
       allocate (self%touches(n), self%touched(n), source=.false.)
       self%rotation = spread(identity, 3, n)
@@ -75,10 +78,12 @@ contains
     real(wp), intent(in) :: centre(3)
 
     type(placement_t) :: placement
+    real(wp) :: displacement(3)
 
     placement = self%placement(tool)
-    self%displacement(:, tool) = placement%translation &
-        + placement%vector_to_global(centre) - centre
+    displacement = placement%translation + placement%vector_to_global(centre) - centre
+    self%rest(:, tool) = self%rest(:, tool) + displacement - self%displacement(:, tool)
+    self%displacement(:, tool) = displacement
     self%centre(:, tool) = centre
   end subroutine refer_to
 
@@ -92,6 +97,7 @@ contains
     call visitor%reals("tool_rotation", size(self%rotation), self%rotation)
     call visitor%reals("tool_untilted", size(self%untilted), self%untilted)
     call visitor%reals("tool_angle", size(self%angle), self%angle)
+    call visitor%reals("tool_rest", size(self%rest), self%rest)
     call visitor%reals("tool_load", size(self%load), self%load)
     call visitor%reals("tool_force", size(self%force), self%force)
     call visitor%reals("layer_offset", size(self%layer_offset), self%layer_offset)

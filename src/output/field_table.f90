@@ -77,11 +77,23 @@ contains
     integer :: i
 
     table = common_fields()
+    if (has_materials(model)) then
+      table = [table, sheet_row("material", "", "number of the material, in the order of the "// &
+          "input; 0 at nodes between materials", fill_material)]
+    end if
     if (.not. allocated(model%internal_variable)) return
     do i = 1, size(model%internal_variable)
       table = [table, internal_variable_row(model, i)]
     end do
   end function field_table
+
+  !> Whether the sheet has several materials.
+  pure logical function has_materials(model)
+    type(model_t), intent(in) :: model
+
+    has_materials = allocated(model%material_of)
+    if (has_materials) has_materials = any(model%material_of /= model%material_of(1))
+  end function has_materials
 
   !> Return the fields of every model.
   function common_fields() result(table)
@@ -288,6 +300,25 @@ contains
       end do
     end do
   end subroutine fill_equivalent_stress
+
+  !> Set the numbers of the materials.
+  pure subroutine fill_material(model, state, nodal, cell)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(out) :: nodal(:, :), cell(:, :)
+
+    integer :: number(size(state%x, 2)), e
+
+    number = -1
+    do e = 1, model%n_element
+      associate (node => model%connectivity(:, e))
+        number(node) = merge(model%material_of(e), 0, number(node) == -1 &
+            .or. number(node) == model%material_of(e))
+      end associate
+    end do
+    nodal(1, :) = real(number, wp)
+    cell(1, :) = real(model%material_of, wp)
+  end subroutine fill_material
 
   !> Evaluate an internal variable.
   subroutine fill_internal_variable(variable, model, state, value)

@@ -18,6 +18,7 @@ module dd3_output_history
   use dd3_model_state, only : state_t
   use dd3_model_terms_released, only : released_tool, remaining_force
   use dd3_model_pressed_tools, only : tilt_of
+  use dd3_model_tool_supports, only : cushion_force, has_cushion, has_spacer, spacer_force
   use dd3_model_turning, only : torque, turned_angle
   use dd3_output_csv, only : table_t
   use dd3_output_forming_columns, only : add_forming_heading, add_forming_values
@@ -117,6 +118,10 @@ contains
       end if
       if (model%tilts(i)) call add_vector(names, units, trim(model%tool(i)%name)//"_tilt_", &
           "degrees")
+      if (has_cushion(model, i)) names = names//","//trim(model%tool(i)%name)//"_cushion"
+      if (has_cushion(model, i)) units = units//",N"
+      if (has_spacer(model, i)) names = names//","//trim(model%tool(i)%name)//"_spacer"
+      if (has_spacer(model, i)) units = units//",N"
       if (.not. model%turns(i)) cycle
       names = names//","//trim(model%tool(i)%name)//"_angle,"//trim(model%tool(i)%name)//"_torque"
       units = units//",degrees,N.mm"
@@ -215,6 +220,10 @@ contains
       call table%add_real(state%observed%depth(i))
       if (model%tool(i)%compliance > 0.0_wp) call table%add_real(deflection(i))
       if (model%tilts(i)) call table%add_reals(180.0_wp/pi*tilt_of(state%tools, i))
+      associate (phase => model%phase(state%phase))
+        if (has_cushion(model, i)) call table%add_real(cushion_force(phase, state%tools, i))
+        if (has_spacer(model, i)) call table%add_real(spacer_force(phase, state%tools, i))
+      end associate
       if (.not. model%turns(i)) cycle
       call table%add_real(turned_angle(state, i))
       call table%add_real(torque(model, state, i))

@@ -21,7 +21,7 @@ module dd3_output_restart_format
   !> and `mesh/x_start` (of a job that starts from another) only where they were divided in the run
   !> itself.
   character(len=*), parameter :: mark = "dd3imp restart"
-  integer, parameter :: format_version = 8
+  integer, parameter :: format_version = 9
   !> Entries of `mesh/sizes`: numbers of nodes, of elements, of nodes and points of an element, of
   !> internal variables, of points through the thickness (0: fixed); 1 if the run has ended.
   integer, parameter :: at_node = 1, at_element = 2, at_element_node = 3, at_point = 4, &

@@ -8,6 +8,7 @@ module dd3_process_forces
   use dd3_model_contact_layer, only : offset_factor
   use dd3_model_model, only : model_t
   use dd3_model_pressed_tools, only : tool_balance
+  use dd3_model_tool_supports, only : on_spacer, support_balance, support_matrix
   use dd3_model_state, only : state_t
   use dd3_model_terms_list, only : evaluate_terms, external_forces
   use dd3_system_contact, only : evaluate_contact
@@ -87,8 +88,13 @@ contains
         call trial%term(k)%of%add_tool_force(model, force)
       end do
       do tool = 1, model%n_tool
-        if (phase%pressed(tool)) problem%tool_residual(:, tool) = tool_balance(model, trial, tool, &
-            contact%force)
+        problem%supported(tool) = on_spacer(phase, trial%tools, tool)
+        if (problem%supported(tool)) trial%tools%touches(tool) = .true.
+        if (phase%pressed(tool)) then
+          problem%tool_residual(:, tool) = tool_balance(model, trial, tool, contact%force) &
+              + support_balance(phase, trial%tools, tool)
+          problem%tool_stiffness(:, :, tool) = support_matrix(phase, trial%tools, tool)
+        end if
         ! A pressed tool that has lost the sheet moves back to contact.
         problem%tool_prescribed(:, tool) = 0.0_wp
         if (.not. is_lost(model, trial, tool)) cycle

@@ -15,6 +15,7 @@ module dd3_process_phase_start
   use dd3_model_outward_normals, only : outward_normals
   use dd3_model_phase, only : phase_t
   use dd3_model_pressed_tools, only : begin_tilts
+  use dd3_model_tool_supports, only : spacer_room
   use dd3_model_reactions, only : reactions
   use dd3_model_state, only : state_t
   use dd3_model_terms_list, only : external_forces
@@ -47,9 +48,11 @@ contains
 
     real(wp) :: stored, force(3, model%n_node)
     integer :: tool, k, released_by(model%n_node)
-    logical :: lost, tilted(model%n_tool)
+    logical :: lost, tilted(model%n_tool), pressed(model%n_tool)
 
     tilted = .false.
+    pressed = .false.
+    if (number > 1) pressed = model%phase(number - 1)%pressed
     if (number > 1) tilted = [(model%phase(number - 1)%tilts(tool), tool=1, model%n_tool)]
     stored = contact_energy(model, state)
     force = 0.0_wp
@@ -85,6 +88,8 @@ contains
       do tool = 1, model%n_tool
         if (phase%pressed(tool) .and. phase%active(tool)) call approach(model, tool, state)
       end do
+      where (spread(phase%pressed .and. .not. pressed, 1, 3)) &
+          state%tools%rest = state%tools%displacement
       call place_layers(model, number, state)
       start%layer_offset = state%tools%layer_offset
       start%held_offset = held_offsets(model, phase, state)
@@ -303,6 +308,7 @@ contains
     if (state%tools%touches(tool)) return
     do k = 1, most_advances
       call gap_of_tool(model, tool, state, gap, facing)
+      gap = min(gap, max(0.0_wp, spacer_room(model%phase(state%phase), state%tools, tool)))
       if (gap <= model%tolerance%closed .or. gap > model%tolerance%tool_search) return
       if (facing <= tangential) return
       state%tools%displacement(:, tool) = state%tools%displacement(:, tool) &

@@ -19,6 +19,7 @@ module dd3_process_predictor
   use dd3_model_reactions, only : unbalanced_forces
   use dd3_model_state, only : state_t
   use dd3_model_terms_list, only : add_stiffness, rate_of_forces
+  use dd3_model_tool_supports, only : on_spacer, support_matrix, support_rate
   use dd3_system_contact, only : predictor_contact
   use dd3_system_internal, only : assemble_stiffness
   use dd3_system_linear_problem, only : unknowns_t
@@ -117,6 +118,7 @@ contains
     type(state_t), intent(in) :: committed
     type(system_t), intent(inout) :: system
 
+    real(wp) :: load_rate
     integer :: tool
 
     associate (problem => system%problem, start => committed%start, &
@@ -131,10 +133,16 @@ contains
       do tool = 1, model%n_tool
         problem%tool_prescribed(:, tool) = self%progress &
             *phase%tool_rate(tool, committed%progress, start%tool_displacement)
-        problem%tool_residual(:, tool) = 0.0_wp
-        problem%tool_residual(1, tool) = self%progress &
-            *dot_product(phase%tool_load_rate(tool, committed%progress, &
+      end do
+      do tool = 1, model%n_tool
+        load_rate = self%progress*dot_product(phase%tool_load_rate(tool, committed%progress, &
             start%tool_load(:, tool), start%tool_load_end(:, tool)), phase%direction(:, tool))
+        problem%tool_residual(:, tool) = [load_rate, 0.0_wp, 0.0_wp]
+        if (.not. phase%pressed(tool)) cycle
+        problem%tool_residual(:, tool) = problem%tool_residual(:, tool) &
+            + support_rate(phase, committed%tools, tool, load_rate, problem%tool_prescribed)
+        problem%tool_stiffness(:, :, tool) = support_matrix(phase, committed%tools, tool)
+        problem%supported(tool) = on_spacer(phase, committed%tools, tool)
       end do
     end associate
   end subroutine impose_trial

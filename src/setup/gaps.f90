@@ -8,7 +8,7 @@ module dd3_setup_gaps
   use dd3_tools_separation, only : offset_at_gap
   implicit none
   private
-  public :: set_gaps
+  public :: offset_of_gap, set_gaps
 
 contains
 
@@ -20,7 +20,7 @@ contains
     !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
 
-    real(wp) :: gap, start(3)
+    real(wp) :: gap
     logical :: found
     integer :: i, k
 
@@ -30,9 +30,7 @@ contains
           gap = spec%value
           if (spec%in_thicknesses) gap = gap*model%thickness
           associate (tool => model%tool(spec%tool), other => model%tool(spec%other))
-            start = tool%position - other%position
-            start(:2) = start(:2) + aside(model, i, spec%tool) - aside(model, i, spec%other)
-            call offset_at_gap(tool%surface, other%surface, start, gap, &
+            call offset_of_gap(model, i, spec%tool, spec%other, gap, &
                 model%phase(i)%gap_offset(spec%tool), found)
             if (.not. found) call errors%push_input(spec%at, "no displacement along z gives "// &
                 "this gap between '"//tool%name//"' and '"//other%name//"'", &
@@ -42,6 +40,25 @@ contains
       end do
     end do
   end subroutine set_gaps
+
+  !> Find z of the displacement of a tool relative to another one at which their gap has a value at
+  !> the end of a phase, mm.
+  subroutine offset_of_gap(model, phase, tool, other, gap, offset, found)
+    type(model_t), intent(in) :: model
+    !> Number of the phase, and of the tools.
+    integer, intent(in) :: phase, tool, other
+    real(wp), intent(in) :: gap
+    real(wp), intent(out) :: offset
+    !> False if the surfaces do not face each other along z.
+    logical, intent(out) :: found
+
+    real(wp) :: start(3)
+
+    start = model%tool(tool)%position - model%tool(other)%position
+    start(:2) = start(:2) + aside(model, phase, tool) - aside(model, phase, other)
+    call offset_at_gap(model%tool(tool)%surface, model%tool(other)%surface, start, gap, offset, &
+        found)
+  end subroutine offset_of_gap
 
   !> Return how far `move` has moved a tool along x and y at the end of a phase, mm.
   pure function aside(model, phase, tool)

@@ -6,12 +6,14 @@ module dd3_setup_phases
   use dd3_base_kinds, only : wp
   use dd3_input_case, only : case_t, phase_spec_t
   use dd3_mesh_mesh, only : mesh_t
+  use dd3_model_cushion, only : cushion_t
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_rigid_supports, only : choose_supports
   use dd3_model_tilt, only : new_tilt, tilt_t
   use dd3_model_turn, only : new_turn, turn_t
   use dd3_settings_until, only : until_never
+  use dd3_setup_cushions, only : place_spacers, set_cushions
   use dd3_setup_displacements, only : set_displacements
   use dd3_setup_gaps, only : set_gaps
   use dd3_setup_loads, only : check_density, new_load_sets, new_pressure_sets, set_loads
@@ -52,6 +54,7 @@ contains
       call new_phase_after(before, model%phase(i))
       call set_settings(model, case%phase(i), model%phase(i))
       call set_tools(model, case%phase(i), model%phase(i))
+      call set_cushions(case%phase(i), model%phase(i))
       call set_turns(case%phase(i), model%phase(i))
       call set_displacements(case, i, mesh, model%fixed, led, model%phase(i))
       unloaded = (unloaded .or. case%phase(i)%unload) .and. &
@@ -64,6 +67,7 @@ contains
       before = model%phase(i)
     end do
     call set_gaps(model, case, errors)
+    call place_spacers(model, case, errors)
     call check_times(model, case, errors)
   end subroutine new_phases
 
@@ -108,7 +112,7 @@ contains
     phase%name = ""
     allocate (phase%move(3, n_tool), phase%direction(3, n_tool), source=0.0_wp)
     allocate (phase%tool_load_end(3, n_tool), phase%loads%final(3, n_load), source=0.0_wp)
-    allocate (phase%turn(n_tool), phase%tilt(n_tool))
+    allocate (phase%turn(n_tool), phase%tilt(n_tool), phase%cushion(n_tool), phase%spacer(0))
     allocate (phase%gap_other(n_tool), source=0)
     allocate (phase%gap_offset(n_tool), source=0.0_wp)
     allocate (phase%pressed(n_tool), phase%withdrawn(n_tool), phase%goes_back(n_tool), &
@@ -285,6 +289,8 @@ contains
     phase%active(tool) = active
     phase%pressed(tool) = .false.
     phase%tilt(tool) = tilt_t()
+    phase%cushion(tool) = cushion_t()
+    phase%spacer = pack(phase%spacer, phase%spacer%tool /= tool)
     phase%tool_load_end(:, tool) = 0.0_wp
   end subroutine stop_pressing
 

@@ -7,7 +7,7 @@ module dd3_sheet_contour
   use dd3_base_kinds, only : wp
   use dd3_sheet_cut_function, only : cut_function_t
   use dd3_sheet_location, only : bilinear, natural_coordinates
-  use dd3_sheet_plane_curve, only : loop_t
+  use dd3_mesh_plane_curve, only : loop_t
   implicit none
   private
   public :: find_contours

@@ -7,7 +7,7 @@ module dd3_sheet_cut_border
   use dd3_sheet_curves, only : curve_t
   use dd3_sheet_cut_function, only : cut_function_t
   use dd3_sheet_location, only : natural_coordinates
-  use dd3_sheet_plane_curve, only : is_inside, loop_t
+  use dd3_mesh_plane_curve, only : is_inside, loop_t
   use dd3_sheet_sheet, only : sheet_t
   implicit none
   private

@@ -6,7 +6,7 @@ module dd3_sheet_cut_function
   use dd3_base_kinds, only : wp
   use dd3_sheet_grid, only : grid_t
   use dd3_sheet_location, only : bilinear, corner_sign
-  use dd3_sheet_plane_curve, only : is_inside, loop_t
+  use dd3_mesh_plane_curve, only : is_inside, loop_t
   implicit none
   private
   public :: cut_function_t

@@ -5,7 +5,7 @@
 module dd3_sheet_fitting
   use dd3_base_kinds, only : wp
   use dd3_sheet_core, only : chain_t
-  use dd3_sheet_plane_curve, only : loop_t
+  use dd3_mesh_plane_curve, only : loop_t
   implicit none
   private
   public :: fit_t, fit_chain

@@ -12,7 +12,7 @@ module dd3_sheet_projection
   use dd3_sheet_curves, only : curve_t
   use dd3_sheet_grid, only : grid_t
   use dd3_sheet_location, only : bilinear, corner_sign
-  use dd3_sheet_plane_curve, only : loop_t, new_loop
+  use dd3_mesh_plane_curve, only : loop_t, new_loop
   use dd3_sheet_sheet, only : sheet_t
   implicit none
   private

@@ -50,6 +50,7 @@ contains
     allocate (self%material(0), self%digest(0))
     self%element = ""
     self%report = ""
+    if (allocated(mesh%report)) self%report = mesh%report
   end subroutine new_flat_sheet
 
   !> Move the sheet as a rigid body: turns one after another, then a displacement.

@@ -9,7 +9,7 @@
 module dd3_sheet_smoothing
   use dd3_base_kinds, only : wp
   use dd3_sheet_grid, only : list_quads
-  use dd3_sheet_plane_curve, only : loop_t
+  use dd3_mesh_plane_curve, only : loop_t
   implicit none
   private
   public :: patch_t, smooth

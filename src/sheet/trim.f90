@@ -23,7 +23,7 @@ module dd3_sheet_trim
   use dd3_sheet_fitting, only : fit_chain, fit_t
   use dd3_sheet_grid, only : new_grid
   use dd3_sheet_location, only : bilinear, locate, place_t
-  use dd3_sheet_plane_curve, only : crossing_segments, is_inside, loop_t
+  use dd3_mesh_plane_curve, only : crossing_segments, is_inside, loop_t
   use dd3_sheet_projection, only : project_curves
   use dd3_sheet_rebuild, only : cut_t, least_sine_at, rebuild
   use dd3_sheet_sheet, only : sheet_t

@@ -49,6 +49,10 @@ module dd3_system_linear_problem
     !> Residual of the balance of the pressed tools, `(3, n_tool)`: along their lines, N, and of
     !> those that tilt about its axes, N.mm.
     real(wp), allocatable :: tool_residual(:, :)
+    !> Stiffness of the supports of the pressed tools against their unknowns, `(3, 3, n_tool)`, and
+    !> whether they lie on spacers, `(n_tool)`.
+    real(wp), allocatable :: tool_stiffness(:, :, :)
+    logical, allocatable :: supported(:)
     !> Right-hand side of the reduced system, `(3*n_row)`; of several ranks each has its rows.
     real(wp), allocatable :: rhs(:)
     !> Solution: displacements of the nodes, then the unknowns of the tools that can be
@@ -84,6 +88,8 @@ contains
     allocate (self%bound_force(3, model%n_bound), source=0.0_wp)
     allocate (self%tool_prescribed(3, model%n_tool), self%tool_residual(3, model%n_tool), &
         source=0.0_wp)
+    allocate (self%tool_stiffness(3, 3, model%n_tool), source=0.0_wp)
+    allocate (self%supported(model%n_tool), source=.false.)
     allocate (self%rhs(3*n_row), self%solution(3*n_row), source=0.0_wp)
   end subroutine new_linear_problem
 

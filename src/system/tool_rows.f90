@@ -6,6 +6,7 @@ module dd3_system_tool_rows
   use dd3_base_ranks, only : any_rank, sum_over_ranks, this_rank
   use dd3_contact_operator, only : status_gap
   use dd3_linalg_matrix, only : block_matrix_t, position_of
+  use dd3_linalg_tensor, only : identity
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
   use dd3_model_pressed_tools, only : is_free, support_stiffness
@@ -56,7 +57,7 @@ contains
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
 
-    real(wp) :: stiffness(3)
+    real(wp) :: stiffness(3, 3)
     integer :: tool, i
     logical :: touching(model%n_tool), balanced(3)
 
@@ -66,15 +67,16 @@ contains
       do tool = 1, model%n_tool
         associate (row => model%tool_row(tool))
           if (row == 0) cycle
-          balanced = is_free(phase, tool) .and. touching(tool)
-          stiffness = support_stiffness(phase, tool)
+          balanced = is_free(phase, tool) .and. (touching(tool) .or. problem%supported(tool))
+          stiffness = problem%tool_stiffness(:, :, tool) &
+              + spread(support_stiffness(phase, tool), 2, 3)*identity
           associate (block => system%matrix%value(:, :, system%matrix%diagonal(row)), &
               rhs => problem%rhs(3*row - 2:3*row))
             where (.not. balanced) rhs = [dot_product(phase%direction(:, tool), &
                 problem%tool_prescribed(:, tool)), 0.0_wp, 0.0_wp]
             do i = 1, 3
               if (.not. balanced(i)) block(i, i) = 1.0_wp
-              if (balanced(i)) block(i, i) = block(i, i) - stiffness(i)
+              if (balanced(i)) block(i, :) = block(i, :) - stiffness(i, :)
             end do
           end associate
         end associate

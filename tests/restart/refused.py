@@ -62,7 +62,7 @@ def truncate(path):
 def newer_format(path):
     """The format of a later version."""
     with h5py.File(path, "r+") as file:
-        file.attrs.modify("format", 9)
+        file.attrs.modify("format", 10)
 
 
 def lose(name):
@@ -113,7 +113,7 @@ DAMAGED = {
     "text": (write_text, NOT_HDF5),
     "truncated": (truncate, NOT_HDF5),
     "field file": (fields_instead, "'{}' is not a restart file of dd3imp"),
-    "newer format": (newer_format, "'{}' has restart format 9, written by dd3imp "),
+    "newer format": (newer_format, "'{}' has restart format 10, written by dd3imp "),
     "missing component": (lose("state/stress"), "'{}': component 'stress' is missing"),
     "wrong size": (shorten("state/internal_variables"), "'{}': component 'internal_variables': expected "),
     "text as numbers": (as_text("state/x"), "'{}': component 'x' cannot be read"),

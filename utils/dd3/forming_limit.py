@@ -20,9 +20,9 @@ import argparse
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from dataclasses import fields as fields_of
-from itertools import pairwise
+from itertools import cycle, pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -133,12 +133,18 @@ def read_curve(path: str | Path, engineering: bool = False, account: Account | N
 
 @dataclass
 class Limits:
-    """What a sheet is judged by: the curve, or why there is none; the largest thinning, and who gives it."""
+    """What a sheet is judged by: the curve, or why there is none; the largest thinning, and who gives it; the curves by
+    the number of the material where materials differ, `curve` is None then."""
 
     curve: Curve | None
     why: str
     thinning: float
     given_by: str
+    by_material: dict[int, Curve] = field(default_factory=dict)
+
+    def curves(self) -> list[Curve]:
+        """Return all curves."""
+        return [self.curve] if self.curve else list(self.by_material.values())
 
 
 @dataclass(frozen=True)
@@ -203,7 +209,10 @@ def find_limits(fields: Fields, job: dict[str, Any], criteria: Criteria, account
         if said and said[0].get("grade"):
             why += ", whose hardening law has no exponent n for the estimate"
     else:
-        curve, why = None, f"no one forming limit curve for the materials {names}"
+        curve, why = None, f"no forming limit curve for each of the materials {names}"
+        if all(found) and "material" in fields.grid["CellData"]:
+            numbers = [job["materials"].index(material) + 1 for material in materials]
+            return Limits(None, "", thinning, given_by, {number: one for number, one in zip(numbers, found) if one})
     return Limits(curve, "" if curve else why, thinning, given_by)
 
 
@@ -253,17 +262,25 @@ def thickness_of(fields: Fields) -> float:
 
 @dataclass
 class Strains:
-    """Major and minor strain of the nodes and of the elements, and their thinning."""
+    """Major and minor strain of the nodes and of the elements, and their thinning; number of the material, 0 between
+    materials, None where the sheet has one."""
 
     major: np.ndarray
     minor: np.ndarray
     thinning: np.ndarray
     at_cells: "Strains | None" = None
+    material: np.ndarray | None = None
 
     def joined(self) -> "tuple[np.ndarray, np.ndarray, Strains]":
         """Return major and minor strains of nodes and elements, and those of the elements alone."""
         cells = self.at_cells or Strains(*np.zeros((3, 0)))
         return np.concatenate([self.major, cells.major]), np.concatenate([self.minor, cells.minor]), cells
+
+    def of_material(self, number: int) -> np.ndarray:
+        """Return whether each of the joined nodes and elements is of a material or lies at one of its elements."""
+        both = [part.material for part in (self, self.at_cells) if part is not None and part.material is not None]
+        joined: np.ndarray = np.isin(np.concatenate(both), (0, number))
+        return joined
 
     def largest_thinning(self) -> float:
         """Return the largest thinning of nodes and elements."""
@@ -277,7 +294,10 @@ def strains_of(sheet: Sheet, step: int, surface: str) -> Strains:
     major, minor = cell_strains(sheet, step, surface)
     at_cells = "thinning" in sheet.grid["CellData"] if "CellData" in sheet.grid else False
     thinning = sheet.values(step, "thinning", True)[0] if at_cells else 1 - np.exp(-major - minor)
-    return Strains(nodes[0], nodes[1], sheet.values(step, "thinning")[0], Strains(major, minor, thinning))
+    material = [sheet.values(step, "material", cells)[0] if "material" in sheet.grid["PointData"] else None
+                for cells in (False, True)]
+    return Strains(nodes[0], nodes[1], sheet.values(step, "thinning")[0],
+                   Strains(major, minor, thinning, material=material[1]), material[0])
 
 
 class Judged(NamedTuple):
@@ -295,7 +315,15 @@ class Judged(NamedTuple):
 def judge(strains: Strains, limits: Limits, margin: float) -> Judged:
     """Judge the strains of a sheet."""
     major, minor, cells = strains.joined()
-    if limits.curve is None:
+    if limits.by_material:
+        zone, said = np.zeros(len(major), int), []
+        for number, curve in limits.by_material.items():
+            here = strains.of_material(number)
+            own = curve.zones(major[here], minor[here], margin)
+            zone[here] = np.maximum(zone[here], own)
+            said.append(by_curve(curve, own, major[here], minor[here], int(here[:len(strains.major)].sum())))
+        verdict = "; ".join(said)
+    elif limits.curve is None:
         zone = None
         verdict = f"no verdict: {limits.why}; give --curve, --low-carbon-steel, or forming_limit in *MATERIAL"
     else:
@@ -307,11 +335,11 @@ def judge(strains: Strains, limits: Limits, margin: float) -> Judged:
 def draw(axes: Axes, strains: Strains, limits: Limits, margin: float, zone: np.ndarray | None) -> None:
     """Draw the diagram, with the zone of each node and element."""
     major, minor, cells = strains.joined()
-    if limits.curve is None or zone is None:
+    if zone is None:
         axes.plot(strains.minor, strains.major, ".", color="0.4")
         axes.plot(cells.minor, cells.major, "x", color="0.6", markersize=3)
     else:
-        draw_zones(axes, limits.curve, zone, major, minor, len(strains.major), margin)
+        draw_zones(axes, limits.curves(), zone, major, minor, len(strains.major), margin)
     low, high = axes.get_xlim()
     axes.plot([low, 0, high], [-low, 0, high], color="0.6", linewidth=0.8)
     axes.set(xlim=(low, high), ylim=(min(0, major.min()), None), xlabel="minor strain (logarithmic)",
@@ -319,9 +347,9 @@ def draw(axes: Axes, strains: Strains, limits: Limits, margin: float, zone: np.n
     axes.grid(True, color="0.9")
 
 
-def draw_zones(axes: Axes, curve: Curve, zone: np.ndarray, major: np.ndarray, minor: np.ndarray, count: int,
+def draw_zones(axes: Axes, curves: Sequence[Curve], zone: np.ndarray, major: np.ndarray, minor: np.ndarray, count: int,
                margin: float) -> None:
-    """Draw the points in the colours of their zones, the first `count` as nodes, and the curve."""
+    """Draw the points in the colours of their zones, the first `count` as nodes, and the curves."""
     for number, name in enumerate(ZONES):
         here = np.flatnonzero(zone == number)
         nodes, elements = here[here < count], here[here >= count]
@@ -329,8 +357,9 @@ def draw_zones(axes: Axes, curve: Curve, zone: np.ndarray, major: np.ndarray, mi
             axes.plot(minor[nodes], major[nodes], ".", color=COLOURS[number], label=name)
             axes.plot(minor[elements], major[elements], "x", color=COLOURS[number], markersize=3)
     at = np.linspace(min(-0.3, minor.min()), max(0.3, minor.max()), 200)
-    axes.plot(at, curve.limit(at), "k-", linewidth=1.5, label=curve.label)
-    axes.plot(at, curve.limit(at) - margin, "k--", linewidth=0.8, label="marginal")
+    for curve, style in zip(curves, cycle(("-", "-.", ":"))):
+        axes.plot(at, curve.limit(at), f"k{style}", linewidth=1.5, label=curve.label)
+        axes.plot(at, curve.limit(at) - margin, "k--", linewidth=0.8, label="marginal" if curve is curves[0] else None)
     axes.legend(frameon=False, fontsize=9)
 
 

@@ -11,7 +11,7 @@ from dd3 import __version__
 from dd3.errors import Problem
 
 NAME = "restart.h5"
-MARK, FORMAT = b"dd3imp restart", 8
+MARK, FORMAT = b"dd3imp restart", 9
 COLUMNS = 4  # of points in an element of type solid_shell; the points of a column follow one another, upwards
 FACTOR = np.array([1.0, 1.0, 1.0, *[np.sqrt(2)] * 3])  # of Kelvin's notation: 11, 22, 33, 23, 31, 12
 PLACE = ((0, 0), (1, 1), (2, 2), (1, 2), (2, 0), (0, 1))

@@ -63,11 +63,17 @@ def over_limit(run: Path) -> float:
     sheet; above 1 the sheet splits by the forming limit curve of its material."""
     sheet, criteria = Sheet(run), forming_limit.Criteria()
     limits = forming_limit.find_limits(sheet, read_job(run), criteria)
-    if limits.curve is None:
+    if not limits.curves():
         raise Problem(f"{run}: {limits.why}; expected grade or forming_limit in *MATERIAL")
-    major, minor, _ = forming_limit.strains_of(sheet, sheet.last, "middle").joined()
-    judged = limits.curve.zones(major, minor, criteria.margin) > forming_limit.ZONES.index("thickening")
-    return float((major[judged] / limits.curve.limit(minor[judged])).max(initial=0.0))
+    strains = forming_limit.strains_of(sheet, sheet.last, "middle")
+    major, minor, _ = strains.joined()
+    largest = 0.0
+    for number, curve in limits.by_material.items() or {0: limits.curves()[0]}.items():
+        judged = curve.zones(major, minor, criteria.margin) > forming_limit.ZONES.index("thickening")
+        if number:
+            judged &= strains.of_material(number)
+        largest = float((major[judged] / curve.limit(minor[judged])).max(initial=largest))
+    return largest
 
 
 def scalar(run: Path, name: str, places: Mapping[str, Sequence[float]], mirror: Sequence[str]) -> float:

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Polygons in a plane: which points lie inside, the closest point, crossings, corners.
-module dd3_sheet_plane_curve
+module dd3_mesh_plane_curve
   use dd3_base_kinds, only : pi, wp
   implicit none
   private
@@ -200,4 +200,4 @@ contains
     place = 0
   end function crossing_segments
 
-end module dd3_sheet_plane_curve
+end module dd3_mesh_plane_curve
