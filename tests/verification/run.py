@@ -34,8 +34,7 @@ BESIDE_HEAD = "Elements side by side"
 START = """# Verification manual
 
 Cases with a closed form, an independent computation or a published figure: expected value, computed value and error.
-Where a deviation is not due to the mesh, the section gives the cause. Each case is a folder with its input file;
-expected values are computed by scripts that do not use the program.
+Expected values are computed by scripts that do not use the program.
 
     tests/verification/run.py --program build/release/dd3imp --work build/verification --slow --write
 
@@ -52,8 +51,7 @@ cup](reports/square_cup.md#the-aluminium-sheet).
 The tests `case_bending_*` that have no section here compare the bending test with the program's own runs, with halved
 limits of the predictor or on a finer mesh: they are no independent verification.
 
-The times in the studies of refinement are those of one thread of a busy machine: compare within a picture. There are
-three unknowns for each node.
+The times in the studies of refinement are those of one thread of a busy machine: compare within a picture.
 """
 BESIDE = f"""Unknowns and seconds of the coarsest mesh of each element within {100 * ACCURATE:g} %, from the refinements
 below; none if no mesh is within this error. No element is the best in all cases: `solid_shell` is best in the bending

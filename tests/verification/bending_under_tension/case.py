@@ -91,9 +91,7 @@ tension shifts the neutral line, so that the strip is stretched each time. Mean 
 at the entry, over the last {100 * (1 - STEADY):.0f} % of the draw; sum of the contact pressure at its end over the mean
 of the two tensions, which is θ. Deck `tests/verification/bending_under_tension/case.dat`.
 """, values, slow=True, after="""
-Dashed: the integration, which has no shear. The strip is pressed on the cylinder over 75 degrees, most where it is bent
-and unbent, because its moment lifts it off at the entry and the exit. The contact forces still sum up to those of a
-quarter. With friction the strip stretches less than by the integration, in which all friction acts before the
-unbending; here it begins at two thirds of the arc.
+Dashed: the integration, which has no shear. With friction the strip stretches less than by the integration, in
+which all friction acts before the unbending; here it begins at two thirds of the arc.
 """),
 ]

@@ -81,8 +81,7 @@ to radii down to 13 thicknesses, `tests/strip_bending`.
 """, values),
     Section("V9 Pure bending: refinement and elements", """
 M/M_e at four times the curvature of first yield, elements along the strip x layers. Square elements of `hex8` converge
-to it from above; long ones are far too stiff with any number of layers ([manual](manual.md#blank-the-sheet)). The error
-of one layer of `solid_shell` and of the quadratic elements is that of the quadrature of a stress with kinks: three
-points through a layer of `hex20` and `hex27` give at most 1.291.
+to it from above; long ones are [too stiff](manual.md#blank-the-sheet). The error of the others is that of the
+quadrature of a stress with kinks.
 """, study, slow=True, picture="pure_bending_elements.png"),
 ]

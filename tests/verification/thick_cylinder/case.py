@@ -81,11 +81,10 @@ mean of the others. `radial.py` integrates over the radius with von Mises and th
 2.4 MPa, with pressures in proportion, gives small strains. Deck `tests/verification/thick_cylinder/case.dat`.
 """, values, after="""
 At c = 180 mm the closed form gives 0.19454 mm with 240 MPa. The axial stress of ν = 0.3 adds 1.8 %, the strains of the
-bore another 3.4 %: 0.20474 mm. The program's deviation from the closed form is not an error of the program.
+bore another 3.4 %.
 """),
     Section("V11 Thick cylinder: refinement and elements", """
 Small strains (2.4 MPa), displacement of the rim at c = 180 mm against the radial integration. The edges of `hex20` and
-`hex27` on the circles are curved. `solid_shell` has its thickness along the axis. The errors of the quadratic elements
-change sign with the position of the edge of the plastic zone within an element.
+`hex27` on the circles are curved. `solid_shell` has its thickness along the axis.
 """, study, slow=True, picture="thick_cylinder_elements.png"),
 ]
