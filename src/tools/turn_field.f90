@@ -194,8 +194,8 @@ contains
       do j = 2, size(x, 2)
         if (max(component(j) - low, high - component(j)) <= max(largest, straight)) cycle
         do i = 1, j - 1
-          if (abs(component(i) - component(j)) > max(largest, straight)) &
-              largest = of_pair(i, j, place, component, largest)
+          if (abs(component(i) - component(j)) <= max(largest, straight)) cycle
+          largest = of_pair(i, j, place, component, largest)
         end do
       end do
     end function largest_along_axis
