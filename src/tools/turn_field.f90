@@ -131,9 +131,10 @@ contains
       away(i) = norm2(normal(:, i) - normal(:, j))
     end do
     turn = 0.0_wp
+    most = maxval(away)
+    if (2.0_wp*most <= resolution) return
     largest = least_of_pairs()
     least = sqrt(largest)
-    most = maxval(away)
     pair = 1
     do j = 2, size(x, 2)
       if (away(j) + most <= least) cycle
@@ -146,6 +147,7 @@ contains
             inside(i) .and. inside(j))
         if (square <= largest) cycle
         largest = square
+        least = (1.0_wp - round_off)*sqrt(largest)
         pair = [i, j]
       end do
     end do
@@ -179,26 +181,45 @@ contains
     !> Return the largest difference of normals along the axis, of pairs that lie rather along it
     !> than across it and turn to the same side as the first one.
     pure real(wp) function largest_along_axis() result(largest)
-      real(wp) :: place(size(x, 2)), component(size(x, 2)), product, distance
+      real(wp) :: place(size(x, 2)), component(size(x, 2)), low, high
       integer :: i, j
 
       place = matmul(axis, x)
       component = side*matmul(axis, normal)
-      largest = 0.0_wp
+      low = minval(component)
+      high = maxval(component)
+      ! Differences below that of the two ends, if it counts, need not be searched.
+      largest = of_pair(minloc(component, dim=1), maxloc(component, dim=1), place, component, &
+          0.0_wp)
       do j = 2, size(x, 2)
+        if (max(component(j) - low, high - component(j)) <= max(largest, straight)) cycle
         do i = 1, j - 1
           if (abs(component(i) - component(j)) <= max(largest, straight)) cycle
-          product = (component(i) - component(j))*(place(i) - place(j))
-          if (product <= 0.0_wp) cycle
-          distance = norm2(x(:, i) - x(:, j))
-          if (2.0_wp*(place(i) - place(j))**2 < distance**2) cycle
-          if (product <= largest*distance) cycle
-          largest = max(largest, product/distance*sqrt(factor_of_pair( &
-              sum((normal(:, i) - normal(:, j))**2), distance**2, length, &
-              inside(i) .and. inside(j))))
+          largest = of_pair(i, j, place, component, largest)
         end do
       end do
     end function largest_along_axis
+
+    !> Return the difference of two normals along the axis if the pair counts and if it is larger
+    !> than a value, else this.
+    pure real(wp) function of_pair(i, j, place, component, least) result(value)
+      integer, intent(in) :: i, j
+      !> Coordinates of points and normals along the axis.
+      real(wp), intent(in) :: place(:), component(:)
+      real(wp), intent(in) :: least
+
+      real(wp) :: product, distance
+
+      value = least
+      product = (component(i) - component(j))*(place(i) - place(j))
+      if (product <= 0.0_wp) return
+      distance = norm2(x(:, i) - x(:, j))
+      if (2.0_wp*(place(i) - place(j))**2 < distance**2) return
+      if (product <= least*distance) return
+      value = max(least, product/distance*sqrt(factor_of_pair( &
+          sum((normal(:, i) - normal(:, j))**2), distance**2, length, &
+          inside(i) .and. inside(j))))
+    end function of_pair
 
   end function turn_of_pairs
 

@@ -147,6 +147,26 @@ def test_reliefs(tmp_path, kind, radius):
         assert len(closed.taken) == 17
 
 
+def test_rounded_notch(tmp_path):
+    """Check that a notch is as wide as its rounded mouth, and filled, beside open corners."""
+    def cover():
+        part_set.folded_cover()
+        occ.synchronize()
+        rounded = part_set.edges(lambda b: b[1] > 28 and b[4] - b[1] < 1.1 and b[3] - b[0] < 1e-3 and b[5] - b[2] < 1e-3
+                                 and 4.9 < abs(b[0]) < 5.1)
+        assert len(rounded) == 4, rounded
+        occ.fillet([occ.getEntities(3)[0][1]], rounded, [1.5])
+
+    made(tmp_path / "cover.step", cover)
+    with session() as model:
+        reading = read_part(model, Request(tmp_path / "cover.step", toward=(0, 0, 1)))
+        notch, = reading.notches
+        assert (notch.width, notch.depth) == (pytest.approx(13), pytest.approx(6))
+        closed = closed_part(model, reading, reading.direction.upper)
+        assert not reading.faults and not reading.warnings
+        assert closed.notes[0] == "filled: notch 13 x 6" and "closed: 4 open corners" in closed.notes[1], closed.notes
+
+
 def test_corners_left_open(folder, tmp_path, monkeypatch):
     """Check that corners that stay open are told, of a solid that OpenCASCADE does not close and of a surface."""
     def fails(*_):

@@ -81,6 +81,10 @@ def closed_part(gmsh: Any, reading: Reading, faces: list[int]) -> Closed | None:
     if not openings and not pairs:
         return None
     both = [openings_of(gmsh, shape, side) for side in reading.sheet.sides]
+    # A relief at an open corner goes with it.
+    openings, *inner = ([one for one in some if not is_at_corner(shape, one, pairs)]
+                        for some in (openings, *(found for found, _ in both)))
+    both = [(found, rim) for found, (_, rim) in zip(inner, both)]
     inside = {tuple(middle(gmsh, edge)): edge for edge in shape.edges_inside(faces)}
     left: list[Opening] = []
     with silence():
@@ -116,6 +120,12 @@ def closed_part(gmsh: Any, reading: Reading, faces: list[int]) -> Closed | None:
         notes += said
     return Closed(text, numbers, [tag for tag, number in numbers.items() if number in set(faces)], edges, openings,
                   curves, notes)
+
+
+def is_at_corner(shape: Shape, opening: Opening, pairs: list[tuple[Corner, Corner]]) -> bool:
+    """Tell whether an opening is a part of an open corner: all its faces through the thickness are of that."""
+    beside = {tag for edge in opening.edges for tag in shape.edges[edge].faces} - set(opening.faces)
+    return any(beside <= one.through | other.through for one, other in pairs)
 
 
 def left_open(corners: list[Corner], reason: str) -> str:
@@ -163,6 +173,9 @@ def why(shape: Shape, faces: list[int], opening: Opening) -> str:
     if beside and opening.notch:
         return ("as the sheet goes on beside a bend there: it has to be cut before it is bent, a cut after the stroke "
                 "cannot make it. End the sheet at the bend in the CAD program, or bend the cut blank on a press brake")
+    if opening.notch and len(opening.faces) == 1:
+        return ("as the rims on its two sides, such as those of tabs, do not go on behind it: end that face at one "
+                "line or curve in the CAD program, and cut it after the draw")
     return "as faces end there that do not go on behind it: close it in the CAD program, or choose faces by --faces"
 
 
@@ -234,15 +247,25 @@ def closed_solid(gmsh: Any, reading: Reading, text: str, whole: Side, both: list
     tried = [i for i in hard if not openings[i].formed and openings[i].size <= LARGE * shape.size]
     taken = set[int]()
     at_once = [set().union(*(walls[i] for i in tried))] if tried else []
+    bent = {tag for faces in sheet.sides for bend in find_bends(shape, faces) for tag in bend.faces}
+    tried.sort(key=lambda i: not bent & set(openings[i].faces))
     each = [set(one) for one in dict.fromkeys(tuple(sorted(walls[i])) for i in tried)]
+    untried = list[set[int]]()
     for some in (at_once, each if len(each) > 1 else []):
-        for inside in [one for one in some if not one <= taken]:
+        for k, inside in enumerate(some):
+            if inside <= taken:
+                continue
             new, known = without(gmsh, side, inside)
             if new:
                 other = side_of(gmsh, shape, new, set(shape.tags), fixed, (sheet.sides, known))
                 if not inside & set(other.numbers) and not other.loops(set(shape.tags)):
                     side, taken = other, taken | inside
-    left = [openings[i] for i in hard if not walls[i] <= taken]
+            # The part is refused for an opening beside a bend, whatever becomes of the others.
+            if some is each and not inside <= taken and any(walls[i] == inside and bent & set(openings[i].faces)
+                                                            for i in tried):
+                untried = each[k + 1:]
+                break
+    left = [openings[i] for i in hard if not walls[i] <= taken and walls[i] not in untried]
     return (None, []) if side.loops(set(shape.tags)) else (side, left)
 
 
@@ -320,7 +343,7 @@ def number_by_vertices(points: np.ndarray, sides: tuple[list[int], list[int]], v
     """Return the number of a face that was changed: of the faces of that side all of whose known vertices it has, or of
     those through the thickness, the one with which it has the most vertices in common; 0 without one."""
     def common(of: list[int]) -> np.ndarray:
-        known = [vertices[tag] for tag in of if len(vertices[tag])]
+        known = [vertices[tag] for tag in of if len(vertices.get(tag, ()))]
         return cKDTree(np.concatenate(known)).query(points)[0] <= near if known else np.zeros(len(points), bool)
 
     known = common(list(vertices))

@@ -136,7 +136,7 @@ def turns(shape: Shape, faces: list[int], loop: Loop) -> np.ndarray:
 def find_notches(shape: Shape, faces: list[int], loop: Loop) -> list[Notch]:
     """Return the notches of the outer rim: stretches in which it turns inwards between two corners, and goes on in
     about its direction behind them."""
-    turn = turns(shape, faces, loop)
+    turn, edge = turns(shape, faces, loop), edges_of_rim(shape, loop)
     corner = np.flatnonzero(np.abs(turn) > CORNER)
     found = []
     for inside in inward_runs(turn[corner]):
@@ -145,12 +145,13 @@ def find_notches(shape: Shape, faces: list[int], loop: Loop) -> list[Notch]:
         whole = turn[corner][inside].sum()
         if whole > -INSIDE or min(turn_before, turn_after) < MOUTH or abs(turn_before + whole + turn_after) > CHANGE:
             continue
-        ends = shape.nodes[loop.nodes[corner[[before, after]]]]
+        first, last = (outside_of(edge, turn, int(corner[k]), step) for k, step in ((before, -1), (after, 1)))
+        ends = shape.nodes[loop.nodes[[first, last]]]
         along = unit(ends[1] - ends[0])
         away = shape.nodes[loop.nodes[corner[inside]]] - ends[0]
         depth = float(np.linalg.norm(away - (away @ along)[:, None] * along, axis=1).max())
         found.append(Notch(float(np.linalg.norm(ends[1] - ends[0])), depth, ends.mean(axis=0),
-                           edges_between(shape, loop, *corner[[before, after]])))
+                           edges_between(edge, first, last)))
     return found
 
 
@@ -164,10 +165,23 @@ def edges_of_rim(shape: Shape, loop: Loop) -> np.ndarray:
     return np.where(own[at] == pairs @ weights, shape.piece_edge[at], -1)
 
 
-def edges_between(shape: Shape, loop: Loop, first: int, last: int) -> list[int]:
-    """Return the edges of a rim between two of its nodes, by their places in it."""
-    places = np.arange(first, last if last > first else last + len(loop.nodes)) % len(loop.nodes)
-    return sorted(set(edges_of_rim(shape, loop)[places].tolist()) - {-1})
+def edges_between(edge: np.ndarray, first: int, last: int) -> list[int]:
+    """Return the edges of a rim, of each piece of it, between two of its nodes, by their places in it."""
+    places = np.arange(first, last if last > first else last + len(edge)) % len(edge)
+    return sorted(set(edge[places].tolist()) - {-1})
+
+
+def outside_of(edge: np.ndarray, turn: np.ndarray, node: int, step: int) -> int:
+    """Return the node of a rim at which the mouth of a notch ends, in one direction from the first corner that turns
+    outwards: that corner, or of a rounded mouth the far end of the edge that turns there."""
+    # Of the pieces in this direction from the nodes.
+    beyond = edge if step > 0 else np.roll(edge, 1)
+    rounded, here = beyond[node], node
+    if turn[node] > MOUTH or rounded < 0:
+        return node
+    while beyond[here] == rounded and turn[(here + step) % len(edge)] > 0:
+        here = (here + step) % len(edge)
+    return here
 
 
 def inward_runs(turn: np.ndarray) -> list[np.ndarray]:
