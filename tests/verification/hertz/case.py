@@ -112,8 +112,9 @@ second moment of the nodal forces; the pressure is the force of the middle node 
     Section("V16 Cylinder on a half-space: contact layer", """
 The same in the compliant formulation: a layer of height h on the cylinder, in which the pressure is
 p_0 (h/g - 2 + g/h) of the gap g, p_0 = 1e-5 E. `layer` is h over the thickness of the sheet, here the 8 mm of the
-block: at the default 0.02, h is 0.16 mm, and the contact spreads. Expected: the integral equation of the half-space with
-the law of the layer, constant pressures on 300 strips (`tests/verification/hertz/layer.py`); without a layer it gives Hertz's values to 1e-4.
+block: at the default 0.02, h is 0.16 mm, and the contact spreads. Expected: the integral equation of the half-space
+with the law of the layer, constant pressures on 300 strips (`tests/verification/hertz/layer.py`); without a layer it
+gives Hertz's values to 1e-4.
 """, layered, slow=True),
     Section("V16 Cylinder on a half-space: refinement and elements", """
 Half-width of the contact.
