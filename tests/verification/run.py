@@ -44,9 +44,7 @@ value with the largest error, of its tolerance; all values and the meshes of the
 tolerance.
 
 V3 is in unit tests, V26, V28 and V30 are reports ([square cup](reports/square_cup.md), [round
-cup](reports/round_cup.md), [rail](reports/rail.md)). Comparisons with measured values are in the reports on the [split
-ring](reports/split_ring.md), the [cup of AA6016](reports/round_cup_aa6016.md) and the [square
-cup](reports/square_cup.md#the-aluminium-sheet).
+cup](reports/round_cup.md), [rail](reports/rail.md)).
 
 The tests `case_bending_*` that have no section here compare the bending test with the program's own runs, with halved
 limits of the predictor or on a finer mesh: they are no independent verification.

@@ -105,16 +105,16 @@ SECTIONS = [
     Section("V16 Cylinder on a half-space (Hertz)", """
 A rigid cylinder of radius R = 10 mm is pressed by P = 500 N/mm on an elastic half-space in plane strain, without
 friction. Hertz: half-width a = √(4 P R/(π E*)), E* = E/(1 - ν²), largest pressure 2 P/(π a), distribution an ellipse.
-The half-space is a quarter of 8 x 8 mm, its elements equal up to 0.3 mm. The half-width is that of the ellipse with the
+The half-width is that of the ellipse with the
 second moment of the nodal forces; the pressure is the force of the middle node over its part of the face. Deck
 `tests/verification/hertz/case.dat`; `hex20` cannot be in contact. Contact formulation: mixed.
 """, values, slow=True),
     Section("V16 Cylinder on a half-space: contact layer", """
 The same in the compliant formulation: a layer of height h on the cylinder, in which the pressure is
 p_0 (h/g - 2 + g/h) of the gap g, p_0 = 1e-5 E. `layer` is h over the thickness of the sheet, here the 8 mm of the
-block: at the default 0.02, h is 0.16 mm, far above the clearance a²/(2 R) = 1.4e-3 mm at the edge of Hertz's contact,
-and the contact spreads. Expected: the integral equation of the half-space with the law of the layer, constant pressures on 300 strips
-(`tests/verification/hertz/layer.py`); without a layer it gives Hertz's values to 1e-4.
+block: at the default 0.02, h is 0.16 mm, and the contact spreads. Expected: the integral equation of the half-space
+with the law of the layer, constant pressures on 300 strips (`tests/verification/hertz/layer.py`); without a layer it
+gives Hertz's values to 1e-4.
 """, layered, slow=True),
     Section("V16 Cylinder on a half-space: refinement and elements", """
 Half-width of the contact.
