@@ -60,9 +60,15 @@ BEAD = """*DRAWBEAD bead
   tool = blank_holder
 
 *CONTACT"""
+# Times of the phases with a friction by the speed, and a holder on springs.
+CUSHION = (("  penalty = ${p}", "  layer = ${p}"), ('punch.bez"', 'punch.bez"\n  friction_law = "speed_table 0:1 5:0.6"'),
+           ("-22600", "-22600\n  stroke_table = blank_holder 0 1  0.1 1.2\n  pin = blank_holder 60 16 0 1\n"
+            "  pin = blank_holder 100 0 0 1\n  pin = blank_holder 100 35 0 1\n  duration = 1"),
+           *((text, f"{text}\n  duration = 1") for text in ("force punch 400", "displacement punch 1.8", "x_max y 0.05",
+                                                             "free = x_max y", "unload = on")))
 # Changes of the deck and settings, by name: restart file often, after each increment, at the ends of phases only;
-# fields by increments; motions and pressures along curves of progress; a draw-bead; a tool that tilts; a linear
-# solver that falls back.
+# fields by increments; motions and pressures along curves of progress; a draw-bead; a tool that tilts; springs and
+# times; a linear solver that falls back.
 CASES = {
     "often": ((), ()),
     "each": ((), ("restart=1", "history=5")),
@@ -74,6 +80,7 @@ CASES = {
     "bead": ((("*CONTACT", BEAD),), ("restart=1",)),
     "tilt": ((("  penalty = ${p}", "  layer = ${p}"), ("-22600", "-22600\n  tilt = blank_holder 80 16 0 0")),
              ("restart=1", "p=0.01")),
+    "cushion": (CUSHION, ("restart=1", "p=0.01")),
     "fallback": ((("method = auto", "method = auto\n  tolerance = 1e-15\n  iterations = 1"),), ("restart=3",)),
 }
 MOST_TRIALS = 100
