@@ -87,8 +87,8 @@ contains
   end subroutine scaled_system_setup
 
   !> Sort the blocks of each row in ascending order of their columns: they are put into lists of the
-  !> columns, and back into the rows one column after another. A rigid tool that is pressed has a row
-  !> with the columns of all points it touches.
+  !> columns, and back into the rows one column after another. The row of a pressed tool has the
+  !> columns of all points it touches.
   pure subroutine sort_rows(n, n_block, row_start, column, source)
     integer, intent(in) :: n, n_block, row_start(n + 1)
     integer, intent(inout) :: column(n_block), source(n_block)

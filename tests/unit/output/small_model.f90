@@ -107,7 +107,8 @@ contains
     model%n_candidate = [0, 0]
     do i = 1, 2
       allocate (model%phase(i)%active(2), source=.true.)
-      allocate (model%phase(i)%turn(2), model%phase(i)%tilt(2))
+      allocate (model%phase(i)%turn(2), model%phase(i)%tilt(2), model%phase(i)%cushion(2))
+      allocate (model%phase(i)%spacer(0))
       allocate (model%phase(i)%pressed(2), source=.false.)
       model%phase(i)%mixed = .true.
     end do
