@@ -172,7 +172,9 @@ contains
 
       tilt%tool = pin(1)%tool
       tilt%at = pin(1)%at
-      tilt%pivot = [(sum(pin%share*pin%place(k)), k=1, 3)]/sum(pin%share)
+      ! Other shares are refused by the check of the phase.
+      if (sum(pin%share) > 0.0_wp) tilt%pivot = [(sum(pin%share*pin%place(k)), k=1, 3)] &
+          /sum(pin%share)
     end function tilt_on_pins
 
     !> Return the number of valid entries with a key, up to entry `last` if given.
