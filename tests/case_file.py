@@ -20,8 +20,8 @@ writes the tests as commands of CMake; tests/CMakeLists.txt calls it. Comment li
 Every deck of cases/ and bad_input/ is a case or is named in a file beside it, and every script with an option
 `--program`, but for those of benchmark/, build/ and utils/, says what it is; a file that does not is an error.
 
-Tests with the label `slow` are divided into parts by labels `part_0`, `part_1`, ...; utils/run_tests.sh runs one of
-them, chosen by the commit. `cost` is their time in seconds beside another test, by default `timeout`.
+Tests with the label `slow`, but for those of several processes, are divided into parts by labels `part_0`, `part_1`,
+...; utils/run_tests.sh runs one of them, chosen by the commit. `cost` is their time in seconds beside another test, by default `timeout`.
 """
 import json
 import pathlib
@@ -102,7 +102,7 @@ def parts(found):
     """Return the part of each slow test: the tests in turn, as many in a part as the budget allows."""
     own, part, used = {}, 0, 0
     for name, _, labels, keys in found:
-        if "slow" not in labels:
+        if "slow" not in labels or "petsc" in labels:
             continue
         cost = keys.get("cost", min(BUDGET, keys.get("timeout", SECONDS)))
         if cost > BUDGET:

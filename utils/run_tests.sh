@@ -103,7 +103,11 @@ utils/install_needed.sh --browser || { failed=1; finish; }
 build release && run_tests release
 build debug -DDD3_WARNINGS_ARE_ERRORS=ON && run_tests debug
 if pkg-config --exists PETSc; then
-  build petsc && run_tests petsc
+  if [ "${1:-}" = --slow ]; then
+    build petsc && run_tests petsc
+  else
+    build petsc && run_tests petsc -LE slow
+  fi
 fi
 if [ "${1:-}" = --slow ]; then
   run_tests slow

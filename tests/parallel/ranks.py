@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-#: {"labels": ["petsc"], "processors": 2, "timeout": 1800, "arguments": ["--mpirun", "${MPIEXEC_EXECUTABLE}"]}
+#: {"labels": ["petsc"], "processors": 2, "timeout": 1800,
+#:  "arguments": ["--mpirun", "${MPIEXEC_EXECUTABLE}", "--ranks", "2", "3"]}
+#: {"name": "ranks_many", "labels": ["petsc", "slow"], "processors": 2, "timeout": 1800,
+#:  "arguments": ["--mpirun", "${MPIEXEC_EXECUTABLE}", "--ranks", "8"]}
 """Runs on several ranks give the results of the serial run, end as it does, and continue on another number of ranks.
 
     ranks.py --program build/petsc/dd3imp --mpirun mpirun --work build/ranks --ranks 2 3 4 8
