@@ -86,46 +86,48 @@ contains
     call own_rows(self%matrix, self%first, self%last)
   end subroutine scaled_system_setup
 
-  !> Sort the blocks of each row in ascending order of their columns: they are put into lists of the
-  !> columns, and back into the rows one column after another. The row of a pressed tool has the
-  !> columns of all points it touches.
+  !> Sort the blocks of each row in ascending order of their columns, by transposing the pattern
+  !> twice. The row of a pressed tool has the columns of all points it touches.
   pure subroutine sort_rows(n, n_block, row_start, column, source)
     integer, intent(in) :: n, n_block, row_start(n + 1)
     integer, intent(inout) :: column(n_block), source(n_block)
 
-    integer, allocatable :: row(:), block(:)
-    integer :: start(n + 1), next(n), i, j, k
+    integer, allocatable :: row(:), of_column(:)
+    integer :: column_start(n + 1), start(n + 1)
 
-    allocate (row(n_block), block(n_block))
-    start = 0
+    allocate (row(n_block), of_column(n_block))
+    call transpose_pattern(n, n_block, row_start, column, source, column_start, row, of_column)
+    call transpose_pattern(n, n_block, column_start, row, of_column, start, column, source)
+  end subroutine sort_rows
+
+  !> Transpose a pattern; the rows of the result have ascending columns.
+  pure subroutine transpose_pattern(n, n_block, row_start, column, item, start, row, moved)
+    integer, intent(in) :: n, n_block, row_start(n + 1), column(n_block)
+    !> What each block carries with it.
+    integer, intent(in) :: item(n_block)
+    integer, intent(out) :: start(n + 1), row(n_block), moved(n_block)
+
+    integer :: next(n), i, k
+
+    next = 0
     do k = 1, n_block
-      start(column(k) + 1) = start(column(k) + 1) + 1
+      next(column(k)) = next(column(k)) + 1
     end do
     start(1) = 1
-    do j = 1, n
-      start(j + 1) = start(j) + start(j + 1)
+    do i = 1, n
+      start(i + 1) = start(i) + next(i)
     end do
     next = start(:n)
     do i = 1, n
       do k = row_start(i), row_start(i + 1) - 1
         associate (place => next(column(k)))
           row(place) = i
-          block(place) = source(k)
+          moved(place) = item(k)
           place = place + 1
         end associate
       end do
     end do
-    next = row_start(:n)
-    do j = 1, n
-      do k = start(j), start(j + 1) - 1
-        associate (place => next(row(k)))
-          column(place) = j
-          source(place) = block(k)
-          place = place + 1
-        end associate
-      end do
-    end do
-  end subroutine sort_rows
+  end subroutine transpose_pattern
 
   !> Copy and scale the values of a matrix of the pattern.
   subroutine scaled_system_fill(self, matrix, verdict)
