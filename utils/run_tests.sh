@@ -57,17 +57,26 @@ is_checkout() {
   [ -e .git ] && git rev-parse --git-dir >/dev/null 2>&1
 }
 
-# Runs the part of the slow tests that the hash of the commit chooses, part_0 without git; case_file.py makes the parts.
-run_slow_part() {
-  local parts part commit
+# Prints a pattern of the parts of the slow tests that are left out: all but the one that the hash of the commit chooses,
+# part_0 without git. case_file.py makes the parts.
+parts_left_out() {
+  local parts commit chosen i left=()
   parts=$(ctest --preset slow --print-labels | grep -c '^  part_')
   commit=$(is_checkout && git rev-parse HEAD) || commit=0
-  part=part_$((16#${commit:0:8} % (parts > 0 ? parts : 1)))
-  echo "== slow tests of the commit ${commit:0:8} ($part of $parts), and those that do not run"
-  ctest --preset slow -N -L "^$part\$" | grep ' Test '
-  echo "--"
-  ctest --preset slow -N -LE "^$part\$" | grep ' Test '
-  run_tests slow -L "^$part\$"
+  chosen=$((16#${commit:0:8} % (parts > 0 ? parts : 1)))
+  for ((i = 0; i < parts; i++)); do
+    [ "$i" -eq "$chosen" ] || left+=("part_$i")
+  done
+  (IFS='|'; echo "^(${left[*]:-none})\$")
+}
+
+# Runs the tests of the optimised build with a part of the slow ones.
+run_part() {
+  local left
+  left=$(parts_left_out)
+  echo "== slow tests that do not run"
+  ctest --preset slow -N -L "$left" | grep ' Test '
+  run_tests all -LE "$left"
 }
 
 # Prints what git shows as changed or new, and the files fort.*, to which Fortran writes a unit without a name and which
@@ -100,7 +109,11 @@ finish() {
 
 files_before=$(list_files)
 utils/install_needed.sh --browser || { failed=1; finish; }
-build release && run_tests release
+if [ "${1:-}" = --slow ]; then
+  build release && run_tests all
+else
+  build release && run_part
+fi
 build debug -DDD3_WARNINGS_ARE_ERRORS=ON && run_tests debug
 if pkg-config --exists PETSc; then
   if [ "${1:-}" = --slow ]; then
@@ -108,11 +121,6 @@ if pkg-config --exists PETSc; then
   else
     build petsc && run_tests petsc -LE slow
   fi
-fi
-if [ "${1:-}" = --slow ]; then
-  run_tests slow
-else
-  run_slow_part
 fi
 check_files
 finish
