@@ -159,7 +159,7 @@ contains
       axis = axis/norm2(axis)
       side = sign(1.0_wp, dot_product(along, x(:, pair(1)) - x(:, pair(2))))
     end associate
-    turn(:, 2) = 2.0_wp*asin(0.5_wp*largest_along_axis())*axis
+    turn(:, 2) = 2.0_wp*asin(0.5_wp*largest_along_axis(x, side*normal, inside, axis, length))*axis
 
   contains
 
@@ -178,34 +178,41 @@ contains
           sum((x(:, j) - x(:, k))**2), length, inside(j) .and. inside(k))
     end function least_of_pairs
 
-    !> Return the largest difference of normals along the axis, of pairs that lie rather along it
-    !> than across it and turn to the same side as the first one.
-    pure real(wp) function largest_along_axis() result(largest)
-      real(wp) :: place(size(x, 2)), component(size(x, 2)), low, high
-      integer :: i, j
+  end function turn_of_pairs
 
-      place = matmul(axis, x)
-      component = side*matmul(axis, normal)
-      low = minval(component)
-      high = maxval(component)
-      ! Differences below that of the two ends, if it counts, need not be searched.
-      largest = of_pair(minloc(component, dim=1), maxloc(component, dim=1), place, component, &
-          0.0_wp)
-      do j = 2, size(x, 2)
-        if (max(component(j) - low, high - component(j)) <= max(largest, straight)) cycle
-        do i = 1, j - 1
-          if (abs(component(i) - component(j)) <= max(largest, straight)) cycle
-          largest = of_pair(i, j, place, component, largest)
-        end do
+  !> Return the largest difference of normals along an axis, of pairs that lie rather along it than
+  !> across it and turn to the side to which the normals point.
+  pure real(wp) function largest_along_axis(x, normal, inside, axis, length) result(largest)
+    !> Points up to a spacing outside the ball, `(3, n)`, mm, their normals, and whether they are in
+    !> it.
+    real(wp), intent(in) :: x(:, :), normal(:, :)
+    logical, intent(in) :: inside(:)
+    !> Unit vector, and diameter of the ball, mm.
+    real(wp), intent(in) :: axis(3), length
+
+    real(wp) :: place(size(x, 2)), component(size(x, 2)), low, high
+    integer :: i, j
+
+    place = matmul(axis, x)
+    component = matmul(axis, normal)
+    low = minval(component)
+    high = maxval(component)
+    ! Differences below that of the two ends, if it counts, need not be searched.
+    largest = of_pair(minloc(component, dim=1), maxloc(component, dim=1), 0.0_wp)
+    do j = 2, size(x, 2)
+      if (max(component(j) - low, high - component(j)) <= max(largest, straight)) cycle
+      do i = 1, j - 1
+        if (abs(component(i) - component(j)) <= max(largest, straight)) cycle
+        largest = of_pair(i, j, largest)
       end do
-    end function largest_along_axis
+    end do
+
+  contains
 
     !> Return the difference of two normals along the axis if the pair counts and if it is larger
     !> than a value, else this.
-    pure real(wp) function of_pair(i, j, place, component, least) result(value)
+    pure real(wp) function of_pair(i, j, least) result(value)
       integer, intent(in) :: i, j
-      !> Coordinates of points and normals along the axis.
-      real(wp), intent(in) :: place(:), component(:)
       real(wp), intent(in) :: least
 
       real(wp) :: product, distance
@@ -221,7 +228,7 @@ contains
           inside(i) .and. inside(j))))
     end function of_pair
 
-  end function turn_of_pairs
+  end function largest_along_axis
 
   !> Return the factor with which the square of the difference of two normals counts; 0 for a pair
   !> that does not.
