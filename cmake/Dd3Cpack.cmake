@@ -14,6 +14,7 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # pyvista, for pictures of the sheet and the report, is not in Debian 12: dd3 tells how to install it.
 set(depends "python3 (>= 3.11)" python3-h5py python3-matplotlib python3-numpy python3-pandas python3-scipy python3-tqdm)
 list(JOIN depends ", " CPACK_DEBIAN_PACKAGE_DEPENDS)
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS python3-venv)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA "${CMAKE_SOURCE_DIR}/utils/packaging/debian/postinst"
   "${CMAKE_SOURCE_DIR}/utils/packaging/debian/prerm")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)

@@ -64,7 +64,8 @@ def test_limits(tmp_path):
     assert "not estimated" in judged(tools, None)[0][0][1]
 
 
-@pytest.mark.parametrize(("name", "told"), [("tray", ""), ("sharp_tray", "thinning of"), ("stepped_pan", "inner pan")])
+@pytest.mark.parametrize(("name", "told"), [
+    ("tray", ""), ("sharp_tray", "thinning of"), pytest.param("stepped_pan", "inner pan", marks=pytest.mark.slow)])
 def test_parts(name, told, parts, tmp_path):
     """Check which parts of the set are told to be likely to split."""
     said = call("tool", parts[name], tmp_path / name)

@@ -277,7 +277,7 @@ over the radius). Coulomb: torque µ N R, friction work µ N times the slip, non
 an elastic strip in by 30 degrees against a tension F: without slip their torques sum up to F R, and the strip moves by
 R times the angle, less 0.35 %, by which the pressed strip is longer under the rolls, and less the creep in the contact
 layer, which grows with F. Cases `tests/cases/driven_cylinder`, `rolling_cylinder`, `driven_rolls`.
-""", turning_tools),
+""", turning_tools, slow=True),
     Section("V23 Force of the blank-holder", """
 The [bending test](reports/bending_test.md) on its mesh (b), the first 5 mm of the draw. No support holds the sheet
 along z: the die carries the 22600 N that press the blank-holder, and the force of the punch, within the criterion of

@@ -98,7 +98,7 @@ change the thickness (Hill, 1950); the radial stress leaves an elastic change of
 field `thickness` at the cells, its largest change away from the end that is led. One layer of `solid_shell`; the
 geometry of the other elements is in the unit test `test_model_sheet_thickness`. Deck
 `tests/verification/bent_thickness/case.dat`.
-""", bent),
+""", bent, slow=True),
     Section("V25 Thickness and strains over a radius", """
 A strip of t = 1 mm in plane strain is bent over a quarter of a cylinder of radius R without friction and stretched by
 10 to 13 % at its middle. Where it lies on the cylinder the angle that a part covers gives the stretch λ of the lower
