@@ -132,7 +132,7 @@ def test_closing(bar):
 def test_shown(bar):
     """Check pictures, forming limit diagram and 3D view of the bar, and what is exported."""
     said = call("fld", "bar.out")
-    assert "2 of 2 elements fractured (fracture_damage, mean of the element); largest 1.04 in element " in said
+    assert "12 of 12 nodes, 2 of 2 elements fractured (fracture_damage); largest mean of an element 1.04 in " in said
     assert "2 of 2 elements beyond the limit of bent paths" in said and "; elements " in said
     assert "0 of 2 elements fractured" in call("fld", "bar.out", "--at", "pull:0")
     drawn, _ = forming_limit.figure("bar.out")

@@ -28,12 +28,13 @@ def add_view(report: Report) -> None:
 
 def add_pictures(report: Report) -> None:
     """Add the thinning, the limits that the run follows, and the sheet between its tools."""
-    limits = [(title, name, name, f"{title.lower()} on the deformed sheet", ("all",))
-              for name, (title, *_) in material_limits.FIELDS.items() if name in report.sheet.grid["PointData"]]
-    for title, name, field, alt, hide in (
-            ("Thinning", "thinning", "thinning", "thinning on the deformed sheet", ("all",)), *limits,
-            ("Sheet and tools", "sheet", "equivalent_plastic_strain", "deformed sheet and tools", ())):
-        report.add(title, report.sheet_drawn(name, alt, field=field, hide=hide))
+    limits = [(title, name, name, f"{title.lower()} on the deformed sheet", ("all",), not of_nodes)
+              for name, (title, *_, of_nodes) in material_limits.FIELDS.items()
+              if name in report.sheet.grid["PointData"]]
+    for title, name, field, alt, hide, cells in (
+            ("Thinning", "thinning", "thinning", "thinning on the deformed sheet", ("all",), False), *limits,
+            ("Sheet and tools", "sheet", "equivalent_plastic_strain", "deformed sheet and tools", (), False)):
+        report.add(title, report.sheet_drawn(name, alt, field=field, hide=hide, cells=cells))
 
 
 def add_limit_diagram(report: Report) -> None:
