@@ -138,7 +138,7 @@ contains
     integer :: n, row
 
     if (spec%parameter(i)%text == "") return
-    if (all%count > 0) then
+    if (any(all%value(:all%count)%name == pair_name)) then
       call errors%push_input(spec%parameter(i)%key_at, &
           "pairs p:Y and a file of pairs cannot be combined", "one of the two", code="E124")
       return

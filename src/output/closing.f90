@@ -5,7 +5,7 @@ module dd3_output_closing
   use dd3_base_kinds, only : wp
   implicit none
   private
-  public :: closing_t, held_t, pin_t, place_t, punch_t, support_t
+  public :: closing_t, held_t, pin_t, place_t, punch_t, reached_t, support_t
 
   !> Distance at a node of the sheet.
   type :: place_t
@@ -65,6 +65,14 @@ module dd3_output_closing
     procedure :: pressure
   end type pin_t
 
+  !> Largest value so far of a limit of the material, 1 where it is reached.
+  type :: reached_t
+    real(wp) :: value = 0.0_wp
+    !> Element, 0 for none, and its middle, mm.
+    integer :: element = 0
+    real(wp) :: x(3) = 0.0_wp
+  end type reached_t
+
   !> Measures at the end of a phase.
   type :: closing_t
     type(punch_t), allocatable :: punch(:)
@@ -72,6 +80,8 @@ module dd3_output_closing
     type(support_t) :: support
     !> Those of the whole phase; in a continued run those since its start.
     type(pin_t), allocatable :: pin(:)
+    !> Damage of a law of fracture, and ratio to the forming limit through the whole thickness.
+    type(reached_t) :: damage, forming
   end type closing_t
 
 contains

@@ -8,10 +8,11 @@ module dd3_report_limits_reached
   use dd3_model_element_columns, only : element_columns_t, new_element_columns
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
+  use dd3_output_closing, only : closing_t, reached_t
   use dd3_report_node_report, only : place_of_node
   implicit none
   private
-  public :: has_limits, largest_limits, limit_warnings, limits_note, limits_t
+  public :: has_limits, largest_limits, limit_warnings, limits_note, limits_t, measure_limits
 
   !> Largest damage of the points, and largest ratio to the forming limit of the quadrilaterals, of
   !> each the least through the thickness: a neck crosses the whole sheet. With the elements.
@@ -92,6 +93,33 @@ contains
     limits%forming = of_column(e)
     limits%necked = findloc(columns%of_element, e, dim=1)
   end subroutine find_neck
+
+  !> Measure the largest damage and ratio to the forming limit at the end of a phase.
+  subroutine measure_limits(model, state, closing)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    !> Gets both; unchanged where no material has such a limit, or where it is zero everywhere.
+    type(closing_t), intent(inout) :: closing
+
+    type(limits_t) :: limits
+
+    limits = largest_limits(model, state)
+    if (limits%damage > 0.0_wp) closing%damage = reached(limits%damage, limits%damaged)
+    if (limits%forming > 0.0_wp) closing%forming = reached(limits%forming, limits%necked)
+
+  contains
+
+    !> Return a value with its element.
+    pure type(reached_t) function reached(value, element)
+      real(wp), intent(in) :: value
+      integer, intent(in) :: element
+
+      associate (node => model%connectivity(:, element))
+        reached = reached_t(value, element, sum(state%x(:, node), dim=2)/real(size(node), wp))
+      end associate
+    end function reached
+
+  end subroutine measure_limits
 
   !> Return a note of the largest damage and ratio to the forming limit; empty without limits.
   function limits_note(model, state) result(text)

@@ -8,6 +8,7 @@ module dd3_run_phase_closing
   use dd3_output_run_summary, only : run_summary_t
   use dd3_report_closing, only : measure_closing
   use dd3_report_closing_notes, only : add_closing_notes
+  use dd3_report_limits_reached, only : measure_limits
   use dd3_run_pin_load, only : add_pin_notes, observe_pins
   use dd3_run_support_load, only : add_support_note, find_support
   implicit none
@@ -16,7 +17,8 @@ module dd3_run_phase_closing
 
 contains
 
-  !> Measure how far the sheet is formed at the end of the running phase, and what supports carry.
+  !> Measure how far the sheet is formed at the end of the running phase, its limits, and what
+  !> supports carry.
   subroutine close_phase(model, case, state, summary, notes)
     type(model_t), intent(in) :: model
     type(case_t), intent(in) :: case
@@ -30,6 +32,7 @@ contains
         before => summary%phase(:state%phase - 1)%closing)
       call measure_closing(model, state, closing)
       call find_support(case, model, state, closing%support)
+      call measure_limits(model, state, closing)
       call add_closing_notes(model, state, closing, before, notes)
       call add_support_note(model, state, closing%support, notes)
       ! A phase that a restart continues at its end has no increment.

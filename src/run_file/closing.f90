@@ -4,7 +4,7 @@ module dd3_run_file_closing
   use dd3_base_json, only : json_t
   use dd3_base_text, only : axis_name
   use dd3_model_model, only : model_t
-  use dd3_output_closing, only : closing_t, pin_t, place_t, support_t
+  use dd3_output_closing, only : closing_t, pin_t, place_t, reached_t, support_t
   use dd3_report_attempt_report, only : tool_name
   implicit none
   private
@@ -54,8 +54,27 @@ contains
     call json%end_array()
     call add_support(json, model, closing%support)
     call add_pins(json, closing%pin)
+    call add_reached(json, "fracture_damage", closing%damage)
+    call add_reached(json, "forming_limit_ratio", closing%forming)
     call json%end_object()
   end subroutine add_closing
+
+  !> Add the largest value of a limit; null if there is none.
+  subroutine add_reached(json, name, reached)
+    type(json_t), intent(inout) :: json
+    character(len=*), intent(in) :: name
+    type(reached_t), intent(in) :: reached
+
+    if (reached%element == 0) then
+      call json%add_null(name)
+      return
+    end if
+    call json%begin_object(name, flat=.true.)
+    call json%add("value", reached%value)
+    call json%add("element", reached%element)
+    call json%add("position", reached%x)
+    call json%end_object()
+  end subroutine add_reached
 
   !> Add the locating pins.
   subroutine add_pins(json, pin)

@@ -153,6 +153,10 @@ def test_all_fields(page):
     ends = [[0, 1], [-3, 17], [0.1234, 0.1239], [-250, 400], [0, 8], [1e-5, 3e-5], [0, 7.99]]
     assert page.evaluate("(ends) => ends.map(([a, b]) => stepOf(a, b))", ends) == pytest.approx(
         [step_of(*pair) for pair in ends])  # own limits have the ticks of the pictures
+    found = page.evaluate("""[0.2, 0.49, 0.5, 1].map((part) => colourOf(window.viewer.scene.maps, {},
+        { low: 0, high: 2, step: 0.5, limit: 1 }, part))""")
+    assert found[2:] == [[213, 94, 0]] * 2  # from the limit on; the end of the map just before
+    assert sum(found[0]) < sum(found[1]) and abs(found[1][0] - 253) < 30, found
     middle = page.evaluate("""() => {  // the colour at zero in the legend, white in the middle of the map
       const { low, high } = window.viewer.state.shown, canvas = document.getElementById("legend");
       const y = Math.round(62 + (canvas.height - 72) * high / (high - low));

@@ -19,7 +19,7 @@ from numpy.polynomial.legendre import leggauss
 from dd3.bound import bound_nodes
 from dd3.command import new_parser
 from dd3.errors import LOG, Problem
-from dd3.fields import AT, Fields
+from dd3.fields import AT, LIMITED, Fields
 from dd3.mesh import read_run, write_inp
 from dd3.sheet_state import COLUMNS, SheetState, read_state
 
@@ -64,6 +64,9 @@ def to_dyna(fields: Fields, step: int, target: Path, shells: bool) -> None:
         lines += solid_bounds(points, cells)
     if max(len(cells), len(points)) > MOST:
         raise Problem(f"{fields.path}: more than {MOST} nodes or elements")
+    if left_out := [name for name in LIMITED if name in fields.grid["CellData"]]:
+        LOG.info(f"left out: {', '.join(left_out)}: LS-DYNA has them in history variables, whose places depend on its "
+                 "material; .vtu holds them")
     title = f"{fields.state(step)} of {fields.path.parent.name}"
     target.write_text("\n".join(["*KEYWORD", "*TITLE", title[:80], *lines, "*END", ""]), encoding="utf-8")
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 AT = "travel in mm, PHASE for its end, or PHASE:PERCENT; the nearest step (default: the last)"  # help of --at
 SAME = 1e-6  # distance of places that are the same, over the size of the sheet
+LIMITED = ("fracture_damage", "forming_limit_ratio")  # fields of the limits that a run follows, 1 at the limit
 COMPONENTS = {"stress": ("11", "22", "33", "12", "23", "13")}
 
 

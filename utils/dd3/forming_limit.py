@@ -10,7 +10,8 @@ steel, by --low-carbon-steel, --n, or grade = low_carbon_steel in *MATERIAL, it 
 exponent n of the hardening law or of --n (Keeler and Brazier 1977). --flc-from-material computes it with the laws of
 the run's own material (`dd3 flc`). Without a curve for the material there is no verdict.
 
-The thinning is judged beside the curve, by --thinning, thinning_limit in *MATERIAL, or 0.25, a convention.
+The thinning is judged beside the curve, by --thinning, thinning_limit in *MATERIAL, or 0.25, a convention. Elements
+beyond the limits that the run follows, the fields forming_limit_ratio and fracture_damage, are marked and listed.
 
 The estimate is the engineering strain (23.3 + 14.13 t) n/0.21 % at plane strain, t in mm, n at most 0.21. Its left
 branch is the line of constant thickness, major + minor = const; the slope of its right branch, 0.6, is a convention.
@@ -35,6 +36,7 @@ from dd3.columns import STRAIN, Column, read_columns
 from dd3.command import new_parser
 from dd3.errors import Problem
 from dd3.fields import AT, Fields
+from dd3.material_limits import mark, reached
 from dd3.plot.figures import new_figure, save
 from dd3.run import read_job
 from dd3.sheet import Sheet
@@ -413,6 +415,9 @@ def figure(run: str | Path, at: str | float | None = None, surface: str = "middl
     found = judge(strains, limits, criteria.margin)
     drawn, axes = new_figure((8, 5.2))
     draw(axes, strains, limits, criteria.margin, found.zone)
+    for limit in reached(sheet, step):
+        mark(axes, strains, limit)
+        found.said.append(limit.said())
     axes.set_title(sheet.state(step), fontsize=10)
     return drawn, found
 

@@ -4,8 +4,13 @@
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
+from dd3.fields import LIMITED
+
 THINNING = 0.25  # largest thinning where no limit is given
 GOOD, BAD, DOUBTFUL, OPEN = "good", "not good", "doubtful", "not judged"
+# Of the members of `closing` for the limits that a run follows: question, code of the warning, what the value is.
+REACHED = dict(zip(LIMITED, (("fracture", "W126", "damage"),
+                             ("forming limit of bent paths", "W127", "ratio through the thickness"))))
 COLOURS = {GOOD: "#009e73", BAD: "#d55e00", DOUBTFUL: "#f0e442", OPEN: "#9aa0a6"}
 
 
@@ -38,8 +43,9 @@ def ended_phases(job: dict[str, Any]) -> Iterator[Ended]:
 
 
 def at(place: dict[str, Any]) -> str:
-    """Return where a distance is."""
-    return f"at ({', '.join(f'{x:.1f}' for x in place['position'])}) mm, node {place['node']}"
+    """Return where a distance, or a value of an element, is."""
+    kind = "node" if "node" in place else "element"
+    return f"at ({', '.join(f'{x:.1f}' for x in place['position'])}) mm, {kind} {place[kind]}"
 
 
 def end_of_run(job: dict[str, Any]) -> Item:
@@ -48,6 +54,21 @@ def end_of_run(job: dict[str, Any]) -> Item:
     reached = outcome["state"] == "reached"
     return Item("run", GOOD if reached else BAD,
                 "reached its end" if reached else str(outcome["message"] or outcome["state"]))
+
+
+def limits_of_material(job: dict[str, Any], phases: Sequence[Ended]) -> list[Item]:
+    """Judge by the limits of the materials that the run follows: the damage of a law of fracture, and the forming limit
+    of paths that bend, at the end of the last phase that has ended, or by the warning in one that has not."""
+    items = []
+    for name, (question, code, value) in REACHED.items():
+        found = [reached for phase in phases if (reached := phase.closing.get(name))]
+        first = [str(warning["text"]) for warning in job["warnings"] if warning["code"] == code]
+        if found:
+            items.append(Item(question, BAD if first or found[-1]["value"] >= 1 else GOOD,
+                              f"largest {value} {found[-1]['value']:.3g}, {at(found[-1])}; 1 is the limit"))
+        elif first:
+            items.append(Item(question, BAD, first[0]))
+    return items
 
 
 def formed(phases: Sequence[Ended], waves: float | None) -> list[Item]:
@@ -165,8 +186,8 @@ def judge(job: dict[str, Any], waves: float | None, limits: Sequence[Item], spri
     fixture.
     """
     phases = list(ended_phases(job))
-    return [end_of_run(job), *formed(phases, waves), *slides(phases), *holders(phases, waves), *limits, *springback,
-            *supports(phases), *pins(phases)]
+    return [end_of_run(job), *limits_of_material(job, phases), *formed(phases, waves), *slides(phases),
+            *holders(phases, waves), *limits, *springback, *supports(phases), *pins(phases)]
 
 
 def summary(items: Sequence[Item]) -> str:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Find the parameters of a yield criterion, and of a hardening law, from measured values.
+"""Find the parameters of a yield criterion, of a hardening law, and of a law of fracture, from measured values.
 
 Weighted least squares from several starts. Every trial set is evaluated by dd3imp itself, at single points (*POINT), so
 that the laws are implemented once. Sets that the program refuses, because they are out of bounds or their surface is
@@ -13,10 +13,14 @@ not convex, have an infinite cost. The result is a file with one *MATERIAL block
   Also a Voce law from a tension curve; with a back-stress, from a curve that continues in compression:
     dd3 identify steel --criterion hill48 --r 0:1.79 45:1.51 90:2.27 --hardening voce --curve tension.csv
     dd3 identify steel --hardening voce --backstress lemaitre_chaboche --curve reversal.csv
+  The law of fracture of Hosford and Coulomb from three tests or more:
+    dd3 identify steel --fracture tests.csv --hardening "swift K=565.32 e0=0.007117 n=0.2589"
 
-The curve is a table: logarithmic strain and true stress (MPa) in two columns, or in those that its heading names,
-separated by commas, semicolons, tabs or blanks, with quotes or without, with a decimal point, or a comma where commas
-do not separate. The heading may give units (%, GPa). Other columns, and rows above the numbers, are listed as left out.
+The table of --fracture has the triaxiality, the normalised Lode angle (1 in tension, 0 in plane strain, -1 in
+equibiaxial tension) and the plastic strain to fracture of each test, in columns like those of a curve. The curve is a
+table: logarithmic strain and true stress (MPa) in two columns, or in those that its heading names, separated by commas,
+semicolons, tabs or blanks, with quotes or without, with a decimal point, or a comma where commas do not separate. The
+heading may give units (%, GPa). Other columns, and rows above the numbers, are listed as left out.
 Each line of the file of --data gives one of the values of the options --r, --stress and so on, such as `r 45 1.51` or
 `biaxial_stress 1.18 2`; # begins a comment.
 """
@@ -36,6 +40,7 @@ from matplotlib.figure import Figure
 from dd3.columns import every
 from dd3.command import new_parser
 from dd3.errors import LOG, Problem
+from dd3.identify import fracture
 from dd3.identify.criterion import CRITERIA, criterion
 from dd3.identify.hardening import BACKSTRESSES, LAWS, Curve, hardening, measured_curve, reverses
 from dd3.identify.least_squares import UNIT, NoStart, Points
@@ -46,7 +51,8 @@ from dd3.programs import add_program
 
 @dataclass
 class Task:
-    """What is identified, and from what: the criterion, if it is given, from the data, the hardening from the curve."""
+    """What is identified, and from what: the criterion, if it is given, from the data, the hardening from the curve,
+    the law of fracture from its tests."""
 
     name: str
     program: str
@@ -56,6 +62,8 @@ class Task:
     yields: str = "von_mises"  # criterion of the curve where none is identified
     data: list[Datum] = field(default_factory=list)
     curve: str | None = None  # path of the table
+    fracture: str | None = None  # likewise
+    fracture_exponent: float = 0.1  # n of Hosford and Coulomb
     plastic_strain: bool = False
     backstresses: Sequence[str] = ()
     young: float = 2.1e5  # MPa
@@ -110,7 +118,8 @@ def add_curve(parser: argparse.ArgumentParser) -> None:
     add("--seed", type=int, default=1, help="seed of the random starts (1)")
     add_program(parser)
     add("--output", metavar="FILE", help="file to write (default: NAME.dat)")
-    add("--plot", metavar="FILE", help="picture to draw: measured values and identified curves")
+    add("--plot", metavar="FILE", help="picture to draw: measured values and identified curves, or of --fracture alone "
+        "the strains")
 
 
 def command_line() -> argparse.ArgumentParser:
@@ -136,6 +145,8 @@ def command_line() -> argparse.ArgumentParser:
         help=f"law to identify from --curve ({', '.join(LAWS)}), or a law with all its values")
     add("--curve", metavar="FILE",
         help="tension curve along rolling; with --backstress or yoshida_uemori it goes on in compression")
+    add("--fracture", metavar="FILE", help="triaxiality, Lode angle and strain to fracture of tests")
+    add("--fracture-exponent", type=float, default=0.1, metavar="N", help="exponent n of Hosford and Coulomb (0.1)")
     add_curve(parser)
     return parser
 
@@ -170,8 +181,10 @@ def check_task(parser: argparse.ArgumentParser, task: Task) -> None:
         parser.error("--curve and the name of a law in --hardening go together")
     if task.backstresses and not fits:
         parser.error("--backstress goes with --curve")
-    if not task.criterion and not fits:
-        parser.error("nothing to identify: --criterion, or --hardening with --curve")
+    if not task.criterion and not fits and not task.fracture:
+        parser.error("nothing to identify: --criterion, --hardening with --curve, or --fracture")
+    if not 0 < task.fracture_exponent <= 1:
+        parser.error("--fracture-exponent is above 0 and at most 1")
     check_options(parser, task.name, task.young, task.starts)
 
 
@@ -234,12 +247,13 @@ def on_surface(d: Datum) -> tuple[float, float] | None:
 
 
 def identify(task: Task, output: str | None = None, plot: str | None = None) -> None:
-    """Identify the parameters of a criterion, without one of the hardening beside a given criterion; write the file."""
+    """Identify the parameters of a criterion, without one of the hardening beside a given criterion, and of the law of
+    fracture; write the file."""
     points = Points(task.program, task.young, task.poisson)
     yields, hardens = task.yields, [f"hardening = {task.hardening or UNIT}"]
     table: list[str] = []
     notes: list[str] = []
-    curve, values = None, None
+    curve, values, tests = None, None, None
     try:
         if task.criterion:
             yields, table, notes = criterion(task.criterion, task.given, points, task.data, task.starts, task.seed)
@@ -249,6 +263,10 @@ def identify(task: Task, output: str | None = None, plot: str | None = None) -> 
             hardens, more, other, values = hardening(law, task.backstresses, curve, points, yields, task.starts,
                                                      task.seed)
             table, notes = table + more, notes + other
+        if task.fracture:
+            tests = fracture.read_tests(task.fracture)
+            broken, more, other = fracture.fracture(tests, task.fracture_exponent, points, task.starts, task.seed)
+            hardens, table, notes = [*hardens, f"fracture = {broken}"], table + more, notes + other
     except NoStart:
         raise Problem("error: the program refused the parameters of every start; it said: "
                       f"{points.refusal or 'the points did not converge'}\n"
@@ -258,9 +276,12 @@ def identify(task: Task, output: str | None = None, plot: str | None = None) -> 
     text = block(task.name, points.elastic, yields, hardens, table, notes)
     code, said, _ = points.run(text + f"*POINT p\n  material = {task.name}\n  control = {TENSION}\n"
                                "  target = 1e-6 0 0 0 0 0 steps=1\n")
-    points.bar.close()
     if code != 0:
         raise Problem(said.strip())
+    figure = None
+    if plot and tests and not task.criterion and not task.curve:
+        figure = fracture.picture(broken, tests, points)
+    points.bar.close()
     path = Path(output or f"{task.name}.dat")
     try:
         path.write_text(text, encoding="utf-8")
@@ -269,7 +290,7 @@ def identify(task: Task, output: str | None = None, plot: str | None = None) -> 
     LOG.info(f"{text}\n{points.runs} runs of the program; written to {path}")
     if plot:
         found = values if reverses(task.hardening or "", task.backstresses) else None
-        save(picture_of(text, task.program, task.data, curve, found), plot, 100)
+        save(figure or picture_of(text, task.program, task.data, curve, found), plot, 100)
 
 
 def main(words: Sequence[str] | None = None) -> None:

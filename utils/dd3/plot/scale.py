@@ -3,7 +3,8 @@
 
 Strains and thinning are in per cent. Limits and ticks are multiples of a step of 1, 2 or 5 times a power of ten. Where
 zero lies within the limits the map diverges from white at zero, blue below and red above; elsewhere it is perceptually
-uniform. Both maps can be told apart with the usual kinds of colour blindness.
+uniform. Both maps can be told apart with the usual kinds of colour blindness. The scale of a field that has a limit
+goes from 0 to the limit, 1, at least; from there on one colour marks what is beyond.
 """
 
 import math
@@ -12,7 +13,9 @@ from typing import NamedTuple
 
 import matplotlib
 import numpy as np
-from matplotlib.colors import ListedColormap
+from matplotlib.colors import ListedColormap, to_rgba
+
+from dd3.fields import LIMITED
 
 SEQUENTIAL, DIVERGING = "viridis", "RdBu_r"
 INTERVALS = 8  # of a scale, at most
@@ -21,14 +24,16 @@ FLAT = 1e-9  # range of a field that has one value, over its magnitude
 NARROW = 1e-3  # range that is drawn of such a field, over its magnitude; of zero, in its unit
 MOST_DIGITS = 9  # behind the point
 COLOURS = 256  # of a map
+BEYOND = "#d55e00"  # colour of values beyond a limit
 
 
 class Scale(NamedTuple):
-    """Limits of a scale, and the distance of its ticks, in the unit shown."""
+    """Ends of a scale, the distance of its ticks, and the limit of the field if it has one, in the unit shown."""
 
     low: float
     high: float
     step: float
+    limit: float | None = None
 
     @property
     def ticks(self) -> list[float]:
@@ -75,9 +80,16 @@ def round_scale(low: float, high: float) -> Scale:
     return Scale(math.floor(low / step + 1e-6) * step + 0.0, math.ceil(high / step - 1e-6) * step + 0.0, step)
 
 
-def own_scale(limits: Sequence[float]) -> Scale:
-    """Return the scale between limits that are given."""
-    return Scale(limits[0], limits[1], step_of(*limits))
+def scale_of(field: str, low: float, high: float) -> Scale:
+    """Return the round scale of a field with values between two ends."""
+    if field not in LIMITED:
+        return round_scale(low, high)
+    return round_scale(min(low, 0.0), max(high, 1.0))._replace(limit=1.0)
+
+
+def own_scale(field: str, limits: Sequence[float]) -> Scale:
+    """Return the scale of a field between limits that are given."""
+    return Scale(limits[0], limits[1], step_of(*limits), 1.0 if field in LIMITED else None)
 
 
 def colours_of(scale: Scale, chosen: str | Sequence[str] | None = None) -> ListedColormap:
@@ -86,8 +98,12 @@ def colours_of(scale: Scale, chosen: str | Sequence[str] | None = None) -> Liste
     if not (chosen is None or isinstance(chosen, str)):
         return ListedColormap(chosen)
     at = np.linspace(0, 1, COLOURS)
+    values = scale.low + at * (scale.high - scale.low)
     if chosen is None and scale.is_signed:
-        values = scale.low + at * (scale.high - scale.low)
         at = 0.5 + 0.5 * values / max(-scale.low, scale.high)
-    known = matplotlib.colormaps[chosen or (DIVERGING if scale.is_signed else SEQUENTIAL)]
-    return ListedColormap(known(at))
+    if scale.limit is not None and scale.low < scale.limit < scale.high:
+        at = (values - scale.low) / (scale.limit - scale.low)
+    colours = matplotlib.colormaps[chosen or (DIVERGING if scale.is_signed else SEQUENTIAL)](at)
+    if scale.limit is not None:
+        colours[values >= scale.limit] = to_rgba(BEYOND)
+    return ListedColormap(colours)

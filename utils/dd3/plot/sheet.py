@@ -8,9 +8,9 @@
 
 The sheet and the tools' displacements are read from fields.vtkhdf, their surfaces from the .bez files that
 the run used; for files that were moved since give --tool. Several --at give several pictures below each other. Strains
-and thinning are in per cent, and so are their --limits; zero is white where a field has both signs. Of an
-input file the initial state is drawn, which the program writes after its checks, also if a tool lies in the sheet: do
-the tools lie where they should?
+and thinning are in per cent, and so are their --limits; zero is white where a field has both signs; fracture_damage and
+forming_limit_ratio are red from their limit, 1, on. Of an input file the initial state is drawn, which the program
+writes after its checks, also if a tool lies in the sheet: do the tools lie where they should?
 """
 
 import argparse
@@ -305,13 +305,13 @@ def opened(run: str | Path, program: str | Path | None = None, settings: Mapping
 def limits_of(run: Run, steps: Sequence[int], style: Style) -> Scale:
     """Return the scale of the colours: between the limits of --limits, or round for all values drawn."""
     if style.limits and style.field != levels.LEVEL:
-        return scale.own_scale(style.limits)
+        return scale.own_scale(style.field, style.limits)
     drawn = [run.mesh(step, style.field, style.cells)[0]["shown"] for step in steps]
     low, high = (float(end) for end in (min(map(np.min, drawn)), max(map(np.max, drawn))))
     if style.field == levels.LEVEL:
         low, high = levels.limits_of(int(high))
         return Scale(low, high, 1.0)
-    return scale.round_scale(low, high)
+    return scale.scale_of(style.field, low, high)
 
 
 def new_plotter(size: Sequence[int], count: int = 1) -> Any:
@@ -346,8 +346,8 @@ def make_map(mesh: pv.UnstructuredGrid, label: str, style: Style, output: str | 
     """Draw a sheet alone with its field `shown` and write the picture."""
     points = np.concatenate([part.points for part in reflected(mesh, style.mirror)])
     values = mesh.point_data["shown"]
-    limits = scale.own_scale(style.limits) if style.limits else scale.round_scale(float(min(0.0, values.min())),
-                                                                                     float(values.max()))
+    limits = (scale.own_scale("", style.limits) if style.limits
+              else scale.round_scale(float(min(0.0, values.min())), float(values.max())))
     plotter = new_plotter(style.size)
     plotter.subplot(0, 0)
     add_sheet(plotter, mesh, style, limits)

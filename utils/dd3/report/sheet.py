@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.patches import Patch
 
-from dd3 import computed, forming_limit, measured, springback, verdict
+from dd3 import computed, forming_limit, material_limits, measured, springback, verdict
 from dd3.account import Account
 from dd3.plot import sheet as pictures
 from dd3.plot import skins
@@ -27,11 +27,14 @@ def add_view(report: Report) -> None:
 
 
 def add_pictures(report: Report) -> None:
-    """Add the thinning and the sheet between its tools."""
-    for title, name, field, alt, hide in (
-            ("Thinning", "thinning", "thinning", "thinning on the deformed sheet", ("all",)),
-            ("Sheet and tools", "sheet", "equivalent_plastic_strain", "deformed sheet and tools", ())):
-        report.add(title, report.sheet_drawn(name, alt, field=field, hide=hide))
+    """Add the thinning, the limits that the run follows, and the sheet between its tools."""
+    limits = [(title, name, name, f"{title.lower()} on the deformed sheet", ("all",), not of_nodes)
+              for name, (title, *_, of_nodes) in material_limits.FIELDS.items()
+              if name in report.sheet.grid["PointData"]]
+    for title, name, field, alt, hide, cells in (
+            ("Thinning", "thinning", "thinning", "thinning on the deformed sheet", ("all",), False), *limits,
+            ("Sheet and tools", "sheet", "equivalent_plastic_strain", "deformed sheet and tools", (), False)):
+        report.add(title, report.sheet_drawn(name, alt, field=field, hide=hide, cells=cells))
 
 
 def add_limit_diagram(report: Report) -> None:
@@ -43,6 +46,9 @@ def add_limit_diagram(report: Report) -> None:
     found = forming_limit.judge(strains, limits, report.criteria.margin)
     zone, report.limits = found
     forming_limit.draw(axes, strains, limits, report.criteria.margin, zone)
+    for limit in material_limits.reached(report.sheet, report.last):
+        material_limits.mark(axes, strains, limit)
+        report.limits.append(limit.said())
     report.splits = verdict.splits(found.critical, report.limits, strains.largest_thinning() > limits.thinning)
     content = report.saved("limit", figure, "forming limit diagram")  # that of the 3D view answers to the mouse
     content += "" if zone is None else zone_map(report, zone)

@@ -2,6 +2,8 @@
 // Colours, ranges and legend of fields; controls of the page give the map, bands and range.
 "use strict";
 
+const BEYOND = [213, 94, 0]; // of values beyond a limit, as in dd3.plot.scale
+
 const labelOf = (field) => (field.percent ? `${field.label} (%)` : field.label);
 const valueText = (field, value) =>
   field.names
@@ -17,11 +19,11 @@ function stepOf(low, high) {
   return [1, 2, 5, 10].find((factor) => factor * power >= 0.999 * least) * power;
 }
 
-// Return a range with its ticks, the multiples of a step.
-function withTicks([low, high, step]) {
+// Return a range with its ticks, the multiples of a step; `limit`: that of the field, null without one.
+function withTicks([low, high, step, limit]) {
   const first = Math.ceil(low / step - 1e-6),
     last = Math.floor(high / step + 1e-6);
-  return { low, high, step, ticks: Array.from({ length: last - first + 1 }, (_, i) => (first + i) * step) };
+  return { low, high, step, limit, ticks: Array.from({ length: last - first + 1 }, (_, i) => (first + i) * step) };
 }
 
 // Return a tick with the digits that the step from tick to tick needs.
@@ -32,7 +34,7 @@ function rangeOf(field, step) {
   if (field.names) return { low: -0.5, high: field.names.length - 0.5, ticks: field.names.map((_, i) => i), step: 1 };
   if (element("range").value === "own") {
     const [low, high] = ["low", "high"].map((name) => parseFloat(element(name).value));
-    if (high > low) return withTicks([low, high, stepOf(low, high)]);
+    if (high > low) return withTicks([low, high, stepOf(low, high), field.scale[3]]);
   }
   return withTicks((element("range").value === "step" && field.scales[step]) || field.scale);
 }
@@ -43,13 +45,15 @@ function colourOf(maps, field, shown, part) {
     const number = Math.min(field.names.length - 1, Math.floor(part * field.names.length));
     return [1, 3, 5].map((i) => parseInt(field.colours[number].slice(i, i + 2), 16));
   }
-  let value = shown.low + part * (shown.high - shown.low);
-  if (element("bands").checked) value = Math.min((Math.floor(value / shown.step) + 0.5) * shown.step, shown.high);
-  const signed = shown.low < 0 && shown.high > 0,
-    largest = Math.max(-shown.low, shown.high);
+  const { low, high, limit } = shown;
+  let value = low + part * (high - low);
+  if (limit !== null && value >= limit) return BEYOND;
+  if (element("bands").checked) value = Math.min((Math.floor(value / shown.step) + 0.5) * shown.step, high);
+  const signed = low < 0 && high > 0,
+    largest = Math.max(-low, high),
+    top = limit === null ? high : Math.min(high, limit);
   const map = maps[signed ? "diverging" : element("map").value];
-  const at =
-    (signed ? 0.5 + (0.5 * value) / largest : (value - shown.low) / (shown.high - shown.low)) * (map.length - 1);
+  const at = (signed ? 0.5 + (0.5 * value) / largest : (value - low) / (top - low)) * (map.length - 1);
   const i = Math.max(0, Math.min(map.length - 2, Math.floor(at))),
     rest = Math.max(0, Math.min(1, at - i));
   return [0, 1, 2].map((k) => Math.round(255 * ((1 - rest) * map[i][k] + rest * map[i + 1][k])));

@@ -129,7 +129,7 @@ class Scene:
                 kind = self.kind(name, data)
                 yield {"name": field, "label": self.sheet.component(0, field, at_cells)[1],
                        "help": text_of(data.attrs.get("description", "")), "elements": at_cells, **kind,
-                       **self.written(values, np.issubdtype(data.dtype, np.integer), kind["percent"])}
+                       **self.written(values, np.issubdtype(data.dtype, np.integer), kind["percent"], name)}
 
     def values(self, picture: Picture, field: str, at_cells: bool) -> np.ndarray | None:
         """Return a field at the nodes or elements of a skin; None for elements of another mesh."""
@@ -151,7 +151,8 @@ class Scene:
             return named(list(map(str, range(int(data[:].max()) + 1))))
         return {"percent": scale.in_per_cent(name)}
 
-    def written(self, values: Sequence[np.ndarray | None], whole: bool, percent: bool = False) -> dict[str, Any]:
+    def written(self, values: Sequence[np.ndarray | None], whole: bool, percent: bool = False, name: str = ""
+                ) -> dict[str, Any]:
         """Return arrays of a field, one for each step of the view, its scale at each of them, and that of all."""
         factor = 100.0 if percent else 1.0
         ends = [None if part is None else tuple(factor * float(end(part)) for end in (np.nanmin, np.nanmax))
@@ -159,8 +160,8 @@ class Scene:
         lows, highs = zip(*(pair for pair in ends if pair))
         add = self.arrays.add_whole if whole else self.arrays.add
         return {"values": [None if part is None else add(part) for part in values],
-                "scale": scale.round_scale(min(lows), max(highs)),
-                "scales": [pair and scale.round_scale(*pair) for pair in ends]}
+                "scale": scale.scale_of(name, min(lows), max(highs)),
+                "scales": [pair and scale.scale_of(name, *pair) for pair in ends]}
 
     def limit_fields(self) -> Iterator[dict[str, Any]]:
         """Return the strains and zones of the forming limit diagram, and the zones of thinning and thickening, at nodes
