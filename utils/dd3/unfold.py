@@ -293,9 +293,9 @@ def doubled(corners: np.ndarray) -> np.ndarray:
 
 
 def solved(balance: Balance, places: np.ndarray, tolerance: float) -> np.ndarray | None:
-    """Return the places of equilibrium, within a residual over the largest force, or None if they are not found, by Newton's method, with steps that are halved
-    until the forces out of balance fall and no triangle turns over. The steps are orthogonal to rigid motions in the
-    plane."""
+    """Return the places of equilibrium, within a residual over the largest force, or None if they are not found, by
+    Newton's method, with steps that are halved until the forces out of balance fall and no triangle turns over. The
+    steps are orthogonal to rigid motions in the plane."""
     mesh, count = balance.mesh, len(places)
     residual, frame = out_of_balance(balance, places)
     for _ in range(NEWTON_STEPS):
