@@ -120,7 +120,7 @@ contains
     logical :: inside(size(x, 2))
     real(wp), dimension(size(x, 2)) :: distance, away
     real(wp) :: largest, square, axis(3), side, least, most
-    integer :: i, j, k, l, n, pair(2), kept(size(x, 2))
+    integer :: i, j, pair(2)
 
     do i = 1, size(x, 2)
       distance(i) = sum((x(:, i) - centre)**2)
@@ -136,12 +136,9 @@ contains
     largest = least_of_pairs()
     least = sqrt(largest)
     pair = 1
-    call keep(away + most > least, kept, n)
-    do l = 2, n
-      j = kept(l)
+    do j = 2, size(x, 2)
       if (away(j) + most <= least) cycle
-      do k = 1, l - 1
-        i = kept(k)
+      do i = 1, j - 1
         if (away(i) + away(j) <= least) cycle
         square = (normal(1, i) - normal(1, j))**2 + (normal(2, i) - normal(2, j))**2 &
             + (normal(3, i) - normal(3, j))**2
@@ -194,7 +191,7 @@ contains
     real(wp), intent(in) :: axis(3), length
 
     real(wp) :: place(size(x, 2)), component(size(x, 2)), low, high
-    integer :: i, j, k, l, n, kept(size(x, 2))
+    integer :: i, j
 
     place = matmul(axis, x)
     component = matmul(axis, normal)
@@ -202,12 +199,9 @@ contains
     high = maxval(component)
     ! Differences below that of the two ends, if it counts, need not be searched.
     largest = of_pair(minloc(component, dim=1), maxloc(component, dim=1), 0.0_wp)
-    call keep(max(component - low, high - component) > max(largest, straight), kept, n)
-    do l = 2, n
-      j = kept(l)
+    do j = 2, size(x, 2)
       if (max(component(j) - low, high - component(j)) <= max(largest, straight)) cycle
-      do k = 1, l - 1
-        i = kept(k)
+      do i = 1, j - 1
         if (abs(component(i) - component(j)) <= max(largest, straight)) cycle
         largest = of_pair(i, j, largest)
       end do
@@ -235,23 +229,6 @@ contains
     end function of_pair
 
   end function largest_along_axis
-
-  !> Find the numbers of the points that can be of a pair.
-  pure subroutine keep(possible, kept, n)
-    logical, intent(in) :: possible(:)
-    !> The `n` numbers, ascending.
-    integer, intent(inout) :: kept(:)
-    integer, intent(out) :: n
-
-    integer :: i
-
-    n = 0
-    do i = 1, size(possible)
-      if (.not. possible(i)) cycle
-      n = n + 1
-      kept(n) = i
-    end do
-  end subroutine keep
 
   !> Return the factor with which the square of the difference of two normals counts; 0 for a pair
   !> that does not.
