@@ -183,7 +183,9 @@ def test_limits():
             ("with limits.limited(0.3, 'too long'):\n while True: pass", 2, "error: too long"),
             ("with limits.limited(60, 'too long'): pass", 0, ""),
             ("limits.supervised(lambda: os.kill(os.getpid(), 11), 'a fault')", 2, "error: a fault"),
-            ("limits.supervised(lambda: sys.exit(3), 'a fault')", 3, "")):
+            ("limits.supervised(lambda: sys.exit(3), 'a fault')", 3, ""),
+            ("sys.exit(1 if limits.started(os.getpid)() == os.getpid() else 5)", 5, ""),
+            ("me = os.getpid()\nlimits.started(lambda: sys.exit(4) if os.getpid() == me else 1 / 0)()", 4, "")):
         text = f"import os, sys\nfrom dd3.tools import limits\n{body}\n"
         done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, timeout=100, check=False)
         assert (done.returncode, done.stderr.strip()) == (code, words), (body, done)

@@ -32,8 +32,8 @@ from dd3.tools.facet_files import SUFFIXES
 from dd3.triangles import Triangles, area_vectors, of_cad, of_facets, pairs_matrix, prepared, rims
 
 RIGID_STEPS, RIGID = 400, 1e-6  # iterations of the rigid map, and the change over the size that ends them
-NEWTON_STEPS, SOLVED = 15, 1e-8  # iterations, and the residual that ends them over the largest force
-DIFFERENCE = 1e-7  # step of the derivatives of an element's forces, over its size
+# Iterations, and the residuals over the largest force that end them: with the exponent that is wanted, and before.
+NEWTON_STEPS, SOLVED, ROUGH = 15, 1e-8, 1e-2
 LEAST = 1e-3  # stress over the strength coefficient that counts as none
 SHORTEST = 2.0**-4  # step of Newton's method, at least
 # The exponent of the hardening law falls from 1 to that of the sheet by a step that grows; the least one.
@@ -57,12 +57,26 @@ class Sheet:
         return np.asarray((1 + self.r) / np.sqrt(1 + 2 * self.r)
                           * np.sqrt(square + q * (np.trace(strain, axis1=1, axis2=2)**2 - square)))
 
+    def direction(self, strain: np.ndarray) -> np.ndarray:
+        """Return half the derivatives of the squares of the equivalent strains with the strains (..., 2, 2), linear in
+        these."""
+        other = np.trace(strain, axis1=-2, axis2=-1)[..., None, None] * np.eye(2) - strain
+        return np.asarray((1 + self.r)**2 / (1 + 2 * self.r) * (strain + self.r / (1 + self.r) * other))
+
     def stress(self, strain: np.ndarray) -> np.ndarray:
         """Return the stresses (m, 2, 2), over the strength coefficient, for logarithmic strains."""
-        q = self.r / (1 + self.r)
         secant = (START_STRAIN**2 + self.equivalent(strain)**2)**(0.5 * (self.exponent - 1))
-        other = np.trace(strain, axis1=1, axis2=2)[:, None, None] * np.eye(2) - strain
-        return np.asarray((secant * (1 + self.r)**2 / (1 + 2 * self.r))[:, None, None] * (strain + q * other))
+        return np.asarray(secant[:, None, None] * self.direction(strain))
+
+    def stress_change(self, strain: np.ndarray, change: np.ndarray) -> np.ndarray:
+        """Return the derivatives (m, 3, 2, 2, 2) of the stresses in directions in which the strains have the
+        derivatives `change`."""
+        square = START_STRAIN**2 + self.equivalent(strain)**2
+        along = self.direction(strain)
+        slope = (self.exponent - 1) / square[:, None, None] * np.einsum("mij,mkaij->mka", along, change)
+        secant = square**(0.5 * (self.exponent - 1))
+        return np.asarray(secant[:, None, None, None, None]
+                          * (self.direction(change) + slope[..., None, None] * along[:, None, None]))
 
 
 def frames(mesh: Triangles) -> tuple[np.ndarray, np.ndarray]:
@@ -168,10 +182,13 @@ class Balance:
         # From forces in a triangle's axes to those along the surface at its nodes (m, 3, 2, 2).
         self.along = np.einsum("mkij,mlj->mkil", self.tangents[self.mesh.triangles], self.axes)
 
+    def back(self, corners: np.ndarray) -> np.ndarray:
+        """Return the derivatives (m, 2, 2) of the places in the blank with those in the triangles."""
+        return np.stack((corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=2) @ self.inverse
+
     def strain(self, corners: np.ndarray) -> np.ndarray:
         """Return the logarithmic strains (m, 2, 2), in the axes of the triangles, of corners (m, 3, 2) in the blank."""
-        flat = np.stack((corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=2)
-        back = flat @ self.inverse
+        back = self.back(corners)
         square = np.swapaxes(back, 1, 2) @ back
         mean = 0.5 * (square[:, 0, 0] + square[:, 1, 1])
         half = 0.5 * (square[:, 0, 0] - square[:, 1, 1])
@@ -198,17 +215,33 @@ class Balance:
             np.add.at(total, self.mesh.triangles[:, k], forces[:, k])
         return total
 
+    def strain_change(self, back: np.ndarray) -> np.ndarray:
+        """Return the derivatives (m, 3, 2, 2, 2) of the strains with the places of the corners."""
+        value, axes = np.linalg.eigh(np.swapaxes(back, 1, 2) @ back)
+        gap, total = np.diff(value, axis=1)[:, 0], value.sum(axis=1)
+        clear = gap > 1e-6 * total
+        factor = 1 / np.stack((value, value), axis=1)
+        factor[:, 0, 1] = factor[:, 1, 0] = np.where(
+            clear, np.diff(np.log(value), axis=1)[:, 0] / np.where(clear, gap, 1), 2 / total)
+        # In the principal axes.
+        first = np.einsum("mai,mij->maj", back, axes)[:, None, :, :, None]
+        second = np.einsum("mki,mij->mkj", self.gradient, axes)[:, :, None, None, :]
+        change = first * second
+        change = factor[:, None, None] * (change + np.swapaxes(change, 3, 4))
+        turn = axes[:, None, None]
+        return np.asarray(-0.5 * turn @ change @ np.swapaxes(turn, 3, 4))
+
     def tangent(self, corners: np.ndarray) -> csc_array:
-        """Return the derivatives of the forces with the places, by central differences in each triangle."""
+        """Return the derivatives of the forces with the places."""
         count = len(self.mesh.triangles)
-        step = DIFFERENCE * np.sqrt(abs(np.linalg.det(self.side)))
-        blocks = np.zeros((count, 3, 2, 3, 2))
-        for k in range(3):
-            for axis in range(2):
-                there, back = corners.copy(), corners.copy()
-                there[:, k, axis] += step
-                back[:, k, axis] -= step
-                blocks[:, :, :, k, axis] = (self.forces(there) - self.forces(back)) / (2 * step)[:, None, None]
+        back, strain, area = self.back(corners), self.strain(corners), 0.5 * doubled(corners)
+        cofactor = np.stack((back[:, ::-1, 1], -back[:, ::-1, 0]), axis=2) * np.array([1, -1])[:, None]
+        widening = np.einsum("mai,mki->mka", cofactor, self.gradient) / np.linalg.det(back)[:, None, None]
+        stress = self.sheet.stress(strain)
+        change = self.sheet.stress_change(strain, self.strain_change(back))
+        change += widening[..., None, None] * stress[:, None, None]
+        pull = np.einsum("mkaij,mlj->mlika", change, self.gradient).reshape(count, 3, 2, 6)
+        blocks = area[:, None, None, None] * (self.along @ pull)
         dof = (2 * self.mesh.triangles[:, :, None] + np.arange(2)).reshape(count, 6)
         row, column = np.repeat(dof, 6, axis=1), np.tile(dof, (1, 6))
         size = 2 * len(self.mesh.nodes)
@@ -230,13 +263,17 @@ def unfolded(path: Path, balance: Balance) -> np.ndarray:
     trial = 1.0
     while reached > wanted:
         balance.sheet.exponent = trial
-        found = solved(balance, places)
+        found = solved(balance, places, SOLVED if trial == wanted else ROUGH)
         if found is not None:
             places, reached, step = found, trial, 1.5 * step
         elif reached > 1:
             raise Problem(f"{path}: the equilibrium of the membrane is not found; try another --size")
         elif step < LAST_STEP:
             balance.sheet.exponent = reached
+            found = solved(balance, places, SOLVED)
+            if found is None:
+                raise Problem(f"{path}: the equilibrium of the membrane is not found; try another --size")
+            places = found
             break
         else:
             step /= 2
@@ -255,15 +292,15 @@ def doubled(corners: np.ndarray) -> np.ndarray:
     return np.asarray(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
 
 
-def solved(balance: Balance, places: np.ndarray) -> np.ndarray | None:
-    """Return the places of equilibrium, or None if they are not found, by Newton's method, with steps that are halved
-    until the forces out of balance fall and no triangle turns over. The steps are orthogonal to rigid motions in the
-    plane."""
+def solved(balance: Balance, places: np.ndarray, tolerance: float) -> np.ndarray | None:
+    """Return the places of equilibrium, within a residual over the largest force, or None if they are not found, by
+    Newton's method, with steps that are halved until the forces out of balance fall and no triangle turns over. The
+    steps are orthogonal to rigid motions in the plane."""
     mesh, count = balance.mesh, len(places)
     residual, frame = out_of_balance(balance, places)
     for _ in range(NEWTON_STEPS):
         corners = places[mesh.triangles]
-        if abs(residual).max() <= SOLVED * max(abs(balance.forces(corners)).max(), LEAST * balance.length):
+        if abs(residual).max() <= tolerance * max(abs(balance.forces(corners)).max(), LEAST * balance.length):
             return places
         matrix = bmat([[balance.tangent(corners), csc_array(frame)], [csc_array(frame.T), None]], format="csc")
         factors = splu(matrix, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})

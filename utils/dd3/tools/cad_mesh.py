@@ -18,7 +18,7 @@ from dd3.progress import Progress, doing
 from dd3.tools.closest import closest
 from dd3.tools.division import Division
 from dd3.tools.joints import find_joints, folded, kinks
-from dd3.tools.limits import limited
+from dd3.tools.limits import limited, started
 from dd3.tools.nagata import groups
 from dd3.tools.parameters import filled, parameters_of
 from dd3.tools.surface import areas_at, from_nodes, grid, points_at
@@ -93,33 +93,45 @@ def distances(gmsh: Any, model: Model, net: np.ndarray, shift: np.ndarray | None
     patches of the faces, which are not measured again as long as they are the same, with their distances; it is set.
     """
     distance = np.zeros((len(net), len(PLACES[0])))
+    waiting = []
     for index, tag in enumerate(model.tags):
         chosen = np.flatnonzero(model.face == index)
-        if not len(chosen):
-            continue
         if known and tag in known and np.array_equal(known[tag][0], net[chosen]):
             distance[chosen] = known[tag][1]
-            continue
-        point = points_at(net[chosen], *PLACES)
-        if shift is not None:
-            area = areas_at(net[chosen], *PLACES)
-            length = np.linalg.norm(area, axis=2)
-            # At a corner of 180 degrees a patch has no normal.
-            regular = length > FLAT_CORNER * length.max(axis=1, keepdims=True)
-            normal = area / np.where(regular, length, 1.0)[..., None]
-            wanted = shift[chosen, None]
-            # The search begins on the CAD: from afar its steps do not contract where the radius is smaller.
-            moved = np.where(regular[..., None], point - wanted[..., None] * normal, point)
-            foot = closest(gmsh, tag, moved, model.uv[chosen])[0]
-            height = ((point - foot) * normal).sum(axis=2)
-            away = np.linalg.norm(point - foot, axis=2)
-            distance[chosen] = np.abs(np.where(regular, height - wanted, away - np.abs(wanted)))
-        else:
-            foot = closest(gmsh, tag, point, model.uv[chosen])[0]
-            distance[chosen] = np.linalg.norm(foot - point, axis=2)
+        elif len(chosen):
+            waiting.append((tag, chosen))
+
+    def measured(faces: list[tuple[int, np.ndarray]]) -> list[np.ndarray]:
+        return [distances_of(gmsh, tag, net[chosen], model.uv[chosen], None if shift is None else shift[chosen, None])
+                for tag, chosen in faces]
+
+    # Half of the patches in another process.
+    count = np.cumsum([len(chosen) for _, chosen in waiting])
+    half = int(np.searchsorted(count, count[-1] / 2)) + 1 if waiting else 0
+    others = started(lambda: measured(waiting[half:]))
+    for (tag, chosen), found in zip(waiting, measured(waiting[:half]) + others()):
+        distance[chosen] = found
         if known is not None:
-            known[tag] = net[chosen], distance[chosen]
+            known[tag] = net[chosen], found
     return distance
+
+
+def distances_of(gmsh: Any, tag: int, net: np.ndarray, uv: np.ndarray, shift: np.ndarray | None) -> np.ndarray:
+    """Return the distances of patches of one face at PLACES (patch, 25), mm, see `distances`; `shift` (patch, 1)."""
+    point = points_at(net, *PLACES)
+    if shift is None:
+        return np.asarray(np.linalg.norm(closest(gmsh, tag, point, uv)[0] - point, axis=2))
+    area = areas_at(net, *PLACES)
+    length = np.linalg.norm(area, axis=2)
+    # At a corner of 180 degrees a patch has no normal.
+    regular = length > FLAT_CORNER * length.max(axis=1, keepdims=True)
+    normal = area / np.where(regular, length, 1.0)[..., None]
+    # The search begins on the CAD: from afar its steps do not contract where the radius is smaller.
+    moved = np.where(regular[..., None], point - shift[..., None] * normal, point)
+    foot = closest(gmsh, tag, moved, uv)[0]
+    height = ((point - foot) * normal).sum(axis=2)
+    away = np.linalg.norm(point - foot, axis=2)
+    return np.asarray(np.abs(np.where(regular, height - shift, away - np.abs(shift))))
 
 
 def by_face(model: Model, values: np.ndarray) -> np.ndarray:

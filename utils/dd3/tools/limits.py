@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Calls of a library that on some damaged files does not end, or ends the process by a fault."""
 import os
+import pickle
 import sys
 import threading
 import time
@@ -68,6 +69,32 @@ def beside(body: Callable[[], Any]) -> Iterator[None]:
             failed = wait_for(child) != 0
     if failed:
         body()
+
+
+def started(body: Callable[[], Any]) -> Callable[[], Any]:
+    """Start a function in a child process; return a function that waits for its result. It is called here if that
+    fails."""
+    if not hasattr(os, "fork"):
+        return body
+    reading, writing = os.pipe()
+    child = os.fork()
+    if child == 0:
+        code = 1
+        try:
+            os.close(reading)
+            with os.fdopen(writing, "wb") as pipe:
+                pickle.dump(body(), pipe, pickle.HIGHEST_PROTOCOL)
+            code = 0
+        finally:
+            os._exit(code)
+    os.close(writing)
+
+    def result() -> Any:
+        with os.fdopen(reading, "rb") as pipe:
+            data = pipe.read()
+        return pickle.loads(data) if wait_for(child) == 0 else body()
+
+    return result
 
 
 def wait_for(child: int) -> int:

@@ -186,8 +186,9 @@ def write_patch(file: Any, patch: np.ndarray) -> None:
     rational = np.ptp(weights) > EXACT * weights.max()
     file.write(f"patch {patch.shape[1] - 1} {patch.shape[0] - 1}{' rational' if rational else ''}\n")
     points = np.concatenate([patch[..., :3] / weights[..., None] + 0.0, weights[..., None] / weights.flat[0]], axis=2)
-    for values in points.reshape(-1, 4)[:, :4 if rational else 3].tolist():
-        file.write(" ".join(f"{value:.12g}" for value in values) + "\n")
+    rows = points.reshape(-1, 4)[:, :4 if rational else 3]
+    line = " ".join(["%.12g"] * rows.shape[1]) + "\n"
+    file.write(line * len(rows) % tuple(rows.ravel().tolist()))
 
 
 def read_patches(path: str | Path) -> Patches:

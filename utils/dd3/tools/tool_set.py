@@ -20,6 +20,7 @@ from dd3.tools.binder import NoBinder
 from dd3.tools.die_face import INSET, Face, Reach, TooLong, consistent, estimated, even, flange, with_face
 from dd3.tools.faces import spans
 from dd3.tools.joints import box_of, find_joints
+from dd3.tools.limits import started
 from dd3.tools.moved import placed, rotation
 from dd3.tools.offset import at_distance
 from dd3.tools.pad_force import Pin, Pull, pins
@@ -101,10 +102,14 @@ def both_sides(gmsh: Any, options: ToolSettings, progress: Any
     notes = model.notes + notes
     if not kept.all():
         notes.append("left out: faces that look downwards: " + report.named(surface, np.unique(model.face[~kept])))
-    found, distance = [], {}
-    for name, ahead in (("punch", 1), ("die", -1)):
+    def moved(name: str, ahead: int) -> tuple[Surface, np.ndarray]:
         shift = 0.0 if options.side == name else ahead * gap
-        tool, distance[name] = at_distance(gmsh, model, sign, kept, shift, least, ahead, options.tolerance)
+        return at_distance(gmsh, model, sign, kept, shift, least, ahead, options.tolerance)
+
+    found, distance = [], {}
+    punch, die = started(lambda: moved("punch", 1)), moved("die", -1)
+    for name, (tool, off) in (("punch", punch()), ("die", die)):
+        distance[name] = off
         tool.net = placed(tool.net, matrix, options.move)
         tool.normals = None if tool.normals is None else tool.normals @ matrix.T
         tool.notes = notes + tool.notes
