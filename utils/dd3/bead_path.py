@@ -64,8 +64,8 @@ class Bead:
 @dataclass(frozen=True)
 class Result:
     """What a bead does to the sheet: forces, N/mm, of restraint, and of the bead, the plate before and the one behind
-    it upwards; curvatures, 1/mm, largest slopes, degrees, in the two flanks; strain of the thickness; equivalent plastic
-    strains of the layers, from the lower face."""
+    it upwards; curvatures, 1/mm; largest slopes, degrees, in the two flanks; strain of the thickness; equivalent
+    plastic strains of the layers, from the lower face."""
 
     restraint: float
     bead: float
@@ -101,8 +101,8 @@ def tangent(across: float, apart: float, radii: float) -> tuple[float, float]:
 
 
 def arc_of(line: Callable[[float], tuple[float, float, float]], least: float, moments: float, force: float) -> Arc:
-    """Return an arc; line: by its radius slope at its end, angle, radian, and square of the length of the straight part,
-    mm2; least: radius of the tool. Without force it touches the next tool."""
+    """Return an arc; line: by its radius slope at its end, angle, radian, and square of the length of the straight
+    part, mm2; least: radius of the tool. Without force it touches the next tool."""
     widest = least
     if line(least)[2] > 0:
         above = 2 * least
@@ -133,8 +133,8 @@ class Strip:
         self.rise = 1.0, 0.5  # integrals of k and of k (1 - x) over x = 0 to 1, M = x M1, over the curvature at M1
 
     def turn(self, radius: float) -> float:
-        """Return the slope at which an arc of a radius, mm, begins at the entry shoulder, radian: between the plates the
-        moment rises from nothing in proportion to the distance, over the `lever`, and the curvature with it."""
+        """Return the slope at which an arc of a radius, mm, begins at the entry shoulder, radian: between the plates
+        the moment rises from nothing in proportion to the distance, and the curvature with it."""
         return self.rise[0] * math.sqrt(self.bead.gap / (self.rise[1] * radius))
 
     def arcs(self) -> list[Arc]:
@@ -167,7 +167,9 @@ class Strip:
         start = 2 * bead.friction * bead.clamping
         if start:
             section.pull(start, PULLS)
-        bent, unbent, moments = [], [], []
+        bent: list[float] = []
+        unbent: list[float] = []
+        moments: list[float] = []
         for arc, radius, sign, pressed in zip(arcs, (bead.shoulder, bead.radius, bead.shoulder), (1, -1, 1),
                                               self.pressed):
             rising = np.abs(section.bend(sign / arc.radius, self.steps))
@@ -230,8 +232,9 @@ class Strip:
 
 def integrals(moments: np.ndarray) -> tuple[float, float]:
     """Return the integrals of `Strip.rise`; moments: at curvatures in equal steps from 0."""
-    curvatures, part = np.linspace(0, 1, len(moments)), moments / moments[-1]
-    return float(np.trapezoid(curvatures, part)), float(np.trapezoid(curvatures * (1 - part), part))
+    at = (np.arange(len(moments) - 1) + 0.5) / (len(moments) - 1)
+    part, steps = (moments[1:] + moments[:-1]) / (2 * moments[-1]), np.diff(moments) / moments[-1]
+    return float(at @ steps), float((at * (1 - part)) @ steps)
 
 
 def turned(force: float, moments: float, chord: float, slope: float) -> tuple[float, float]:
@@ -248,4 +251,4 @@ def flow(material: Material, bead: Bead, direction: float = 0.0, layers: int = L
         if abs(result.restraint - last) <= SAME * result.restraint:
             return result
         last = result.restraint
-    raise Problem(f"the force of the bead does not converge in {PASSES} passes: {last:.4g}, {result.restraint:.4g} N/mm")
+    raise Problem(f"the force of the bead does not converge in {PASSES} passes, {result.restraint:.4g} N/mm")

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A section of a sheet that is bent, unbent and pulled in plane strain, with the constitutive laws of the program.
 
-The section is divided into layers. A layer at the initial height z has the stretch l, l^2 = s^2 + 2 s k z, with the
-stretch s and the curvature k of the middle (constant volume: R. Hill, The Mathematical Theory of Plasticity (1950),
-bending of a sheet). The stress across the layers follows from radial equilibrium, from nothing at the convex face. In a
-steady flow the power that passes through a section is P v, v the speed of the middle, with P = T + k M of the tension T
-and the moment M per width; P s is the sum of stress times initial thickness of the layers. Without friction P changes by
-the work in the section, d(P s) = dW; in straight parts P is the tension.
+The section is divided into layers. By constant volume, a layer at the initial height z has the stretch l, l^2 = s^2 +
+2 s k z, with the stretch s and the curvature k of the middle. The stress across the layers follows from radial
+equilibrium, from nothing at the convex face.
+
+In a steady flow the power that passes through a section is P v, v the speed of the middle, with P = T + k M of the
+tension T and the moment M per width; P s is the sum of stress times initial thickness of the layers. Without friction P
+changes by the work in the section, d(P s) = dW; in straight parts P is the tension.
 """
 
 import math
@@ -18,7 +19,8 @@ from dd3.laws import Material
 
 ACROSS = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
 NEWTON, SOLVED = 30, 1e-9  # iterations of a layer; residual over the stress
-ITERATIONS, BALANCED, DAMPED = 80, 1e-7, 15  # of a section; residual over the stress; iterations after which it is damped
+ITERATIONS, BALANCED = 80, 1e-7  # of a section; residual over the stress
+DAMPED = 15  # iterations after which they are damped
 LARGEST = 5e-3  # change of the stretch in an iteration
 SMALLEST = 2.0**-8  # fraction of a step
 
@@ -29,7 +31,8 @@ class Layer:
     def __init__(self, material: Material, along: np.ndarray) -> None:
         self.point, self.direction = material.point(), along
         self.committed = self.point.stress.copy(), self.point.state.copy()
-        self.before, self.stress, self.radial, self.across, self.slope, self.strain = (0.0, 0.0), 0.0, 0.0, 0.0, 0.0, 0.0
+        self.before = 0.0, 0.0  # stresses along and across
+        self.stress = self.radial = self.across = self.slope = self.strain = 0.0
 
     def attempt(self, strain: float, radial: float) -> bool:
         """Integrate over a strain increment along the strip to a stress across, MPa; return False if it fails."""
@@ -142,7 +145,7 @@ class Section:
         for layer in self.layers:
             layer.accept()
         self.stretch, self.curvature, self.lengths, self.radial = stretch, curvature, lengths, radial
-        self.force = wanted / stretch
+        self.force = float(wanted / stretch)
         self.moment = self.size * float((stress / lengths) @ (2 * self.heights / (lengths + stretch)))
         return True
 
