@@ -3,10 +3,11 @@
 
 The sheet is bent at the entry shoulder, in reverse at the bead, and again at the exit shoulder. Once bent, it keeps its
 curvature until the moment is reversed, at the next contact, unless tension straightens it before. Its middle is a chain
-of arcs, each from a contact on, which end tangentially at the next tool, at most as curved as the tools. It is straight
-where the moment is constant: an arc of the radius r and the length a, at the ends of which the moments have the sum m,
-ends in a straight part if a^2 < 2 m r/F, F the tension. The force on a tool is the difference of the forces in the arcs
-before and behind it: the tension along the chord c, and m/c across.
+of arcs, each from a contact on, which end tangentially at the next tool, at most as curved as the tools. Its curvature
+at the contact is higher by M/D, M the moment there, D the elastic stiffness, as the moment is zero in its middle. It is
+straight where the moment is constant: an arc of the radius r that turns by more than a, r a^2 = 2 m/F with the sum m of
+the moments at its ends and the tension F, ends in a straight part. The force on a tool is the difference of the forces
+in the arcs before and behind it: the tension along the chord c, and m/c across.
 """
 
 import math
@@ -16,13 +17,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from dd3.bent_section import Section
+from dd3.bent_section import Section, parts
 from dd3.errors import Problem
 from dd3.laws import Material
 
 LAYERS, STEPS = 16, 20  # through the thickness; to a bend
 PULLS = 4  # steps of the friction at a contact
-PASSES, SAME = 20, 2e-3  # largest number of passes; change of the force at the last one
+PASSES, SAME, ZERO = 20, 2e-3, 1e-4  # largest number of passes; change of the force at the last one, over the uplift
 WIDEST = 1e6  # radius of an arc, mm
 CONTACT, LEAST = 1e-9, 1e-9  # difference of radii that are one, mm; least moment, N
 
@@ -130,6 +131,7 @@ class Strip:
         self.middle = bead.radius + bead.thickness / 2  # radii of the middle of the sheet
         self.edge = bead.shoulder + bead.thickness / 2
         self.moments, self.forces, self.pressed = [0.0] * 3, [0.0] * 3, [0.0] * 4
+        self.returned = [0.0] * 3  # elastic curvatures of the moments at the contacts, 1/mm
         self.rise = 1.0, 0.5  # integrals of k and of k (1 - x) over x = 0 to 1, M = x M1, over the curvature at M1
 
     def turn(self, radius: float) -> float:
@@ -167,12 +169,14 @@ class Strip:
         start = 2 * bead.friction * bead.clamping
         if start:
             section.pull(start, PULLS)
+        reached = [min(1 / arc.radius + elastic, 1 / least) for arc, elastic, least in
+                   zip(arcs, self.returned, (self.edge, self.middle, self.edge))]
         bent: list[float] = []
         unbent: list[float] = []
         moments: list[float] = []
-        for arc, radius, sign, pressed in zip(arcs, (bead.shoulder, bead.radius, bead.shoulder), (1, -1, 1),
-                                              self.pressed):
-            rising = np.abs(section.bend(sign / arc.radius, self.steps))
+        for curvature, radius, sign, pressed in zip(reached, (bead.shoulder, bead.radius, bead.shoulder), (1, -1, 1),
+                                                    self.pressed):
+            rising = np.abs(section.bend(sign * curvature, self.steps))
             if not moments:
                 self.rise = integrals(rising)
             moments.append(float(rising[-1]))
@@ -184,9 +188,10 @@ class Strip:
             unbent.append(section.force)
         last = abs(section.moment)
         self.moments = [moments[0] + moments[1], moments[1] + moments[2], moments[2] + last]
+        self.returned = [moments[0] / section.stiffness, moments[1] / section.stiffness, 0.0]
         self.forces = bent
         forces = self.flanks(arcs, bent, unbent)
-        entry = moments[0] / math.sqrt(bead.gap * arcs[0].radius / self.rise[1])
+        entry = moments[0] / math.sqrt(bead.gap / (reached[0] * self.rise[1]))
         # Behind the exit shoulder the sheet is elastic.
         behind = last / max(bead.thickness, math.sqrt(6 * bead.gap * section.stiffness / max(last, LEAST)))
         around = [self.around(i, arc) for i, arc in enumerate(arcs)]
@@ -195,7 +200,7 @@ class Strip:
                         math.hypot(forces[1][1] - forces[2][1], forces[2][0] - forces[1][0]) * around[2],
                         2 * behind - forces[2][1]]
         return Result(section.force + bead.friction * self.pressed[3], forces[0][1] + forces[1][1], entry,
-                      behind - forces[2][1], (1 / arcs[0].radius, 1 / arcs[1].radius, 1 / arcs[2].radius),
+                      behind - forces[2][1], (reached[0], reached[1], reached[2]),
                       (math.degrees(arcs[0].slope), math.degrees(arcs[1].slope)), -math.log(section.stretch),
                       section.plastic)
 
@@ -231,8 +236,9 @@ class Strip:
 
 
 def integrals(moments: np.ndarray) -> tuple[float, float]:
-    """Return the integrals of `Strip.rise`; moments: at curvatures in equal steps from 0."""
-    at = (np.arange(len(moments) - 1) + 0.5) / (len(moments) - 1)
+    """Return the integrals of `Strip.rise`; moments: before and after each step of a bend."""
+    curvatures = parts(len(moments) - 1)
+    at = (curvatures[1:] + curvatures[:-1]) / 2
     part, steps = (moments[1:] + moments[:-1]) / (2 * moments[-1]), np.diff(moments) / moments[-1]
     return float(at @ steps), float((at * (1 - part)) @ steps)
 
@@ -248,7 +254,7 @@ def flow(material: Material, bead: Bead, direction: float = 0.0, layers: int = L
     strip, last = Strip(material, bead, direction, layers, steps), math.inf
     for _ in range(PASSES):
         result = strip.flow()
-        if abs(result.restraint - last) <= SAME * result.restraint:
+        if abs(result.restraint - last) <= SAME * result.restraint + ZERO * result.uplift:
             return result
         last = result.restraint
     raise Problem(f"the force of the bead does not converge in {PASSES} passes, {result.restraint:.4g} N/mm")

@@ -20,9 +20,14 @@ from dd3.laws import Material
 ACROSS = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
 NEWTON, SOLVED = 30, 1e-9  # iterations of a layer; residual over the stress
 ITERATIONS, BALANCED = 80, 1e-7  # of a section; residual over the stress
-DAMPED = 15  # iterations after which they are damped
+RENEWED = 20  # iterations after which the bounds of the stretch are renewed
 LARGEST = 5e-3  # change of the stretch in an iteration
 SMALLEST = 2.0**-8  # fraction of a step
+
+
+def parts(steps: int) -> np.ndarray:
+    """Return the parts of a bend before and after each step; the first steps are small, where the sheet yields."""
+    return np.asarray(np.linspace(0.0, 1.0, steps + 1)**2)
 
 
 class Layer:
@@ -90,8 +95,8 @@ class Section:
         """Go to a curvature of the middle, 1/mm; the force follows from the work. Return the moments before and after
         each step, N."""
         start, moments = self.curvature, [self.moment]
-        for i in range(1, steps + 1):
-            self.go(start + (curvature - start) * i / steps, None)
+        for part in parts(steps)[1:]:
+            self.go(start + (curvature - start) * float(part), None)
             moments.append(self.moment)
         return np.array(moments)
 
@@ -119,7 +124,7 @@ class Section:
 
     def attempt(self, curvature: float, force: float | None) -> bool:
         """Make a step; return False, without a change, if it fails."""
-        stretch, radial = self.stretch, self.radial
+        stretch, radial, low, high = self.stretch, self.radial, -math.inf, math.inf
         for iteration in range(ITERATIONS):
             lengths = np.sqrt(np.maximum(stretch**2 + 2 * curvature * stretch * self.heights, 1e-6))
             strains = np.log(lengths / self.lengths)
@@ -138,8 +143,12 @@ class Section:
                     np.abs(balanced - radial).max() <= BALANCED * 100 * scale:
                 break
             radial = balanced
-            change = max(-LARGEST, min(LARGEST, (wanted - total) / slope))
-            stretch += change / (1 + iteration // DAMPED)
+            if iteration % RENEWED == 0:  # the bounds move with the stresses across
+                low, high = -math.inf, math.inf
+            low, high = (stretch, high) if wanted > total else (low, stretch)
+            stretch += max(-LARGEST, min(LARGEST, (wanted - total) / slope))
+            if math.isfinite(high - low) and not low < stretch < high:
+                stretch = (low + high) / 2
         else:
             return False
         for layer in self.layers:
