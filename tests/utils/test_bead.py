@@ -38,7 +38,7 @@ def perfect(law="von_mises", young=2e7):
                                             ("hill48 r0=2 r45=1 r90=1.5", 90.0)))
 def test_work(law, direction):
     """Check that a bend and an unbending without tension cost Y' t^2/(4 r) each, in any direction."""
-    material, t, r = perfect(law), 1.0, 100.0
+    material, t, r = perfect(law), 1.0, 25.0
     section = Section(material, t, layers=32, direction=direction)
     section.bend(1 / r, 40)
     section.bend(0.0, 40)
