@@ -120,7 +120,8 @@ def test_command(tmp_path, program):
     said = call(*words, 3, 6, "--friction", 0.1, "--strip", tmp_path / "strip")
     rows = [line.split() for line in said.splitlines()]
     assert rows[0][:3] == ["steel,", "1", "mm;"] and [row[0] for row in rows[3:5]] == ["3", "6"]
-    force, normal = [float(line.split("= ")[1]) for line in said.splitlines() if "force =" in line or "normal =" in line][2:]
+    force, normal = [float(line.split("= ")[1]) for line in said.splitlines() if " force =" in line or "normal =" in line
+                     ][2:]
     assert force == pytest.approx(float(rows[4][1]) + 0.1 * normal, abs=0.1) and normal == pytest.approx(
         -float(rows[4][2]), abs=0.1)
     done = subprocess.run([program, "--check", tmp_path / "strip" / "strip.dat"], capture_output=True, text=True,
@@ -139,7 +140,8 @@ def test_strip(tmp_path, program, text, height, friction):
     with (tmp_path / "strip.out" / "history.csv").open() as file:
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
     columns = ("grip_ux", "tail_ux", "grip_rx", "bead_fz", "entry_fz", "exit_fz")
-    pulled, tail, *forces = np.array([[float(row[name]) for name in columns] for row in rows if row["phase"] == "pull"]).T
+    rows = [row for row in rows if row["phase"] == "pull"]
+    pulled, tail, *forces = np.array([[float(row[name]) for name in columns] for row in rows]).T
     late = pulled > 0.7 * pulled[-1]
     grip, press, before, behind = (np.average(force[late], weights=np.gradient(pulled)[late]) for force in forces)
     thinning = -math.log(np.ptp(pulled[late]) / np.ptp(tail[late]))
