@@ -120,7 +120,7 @@ def test_command(tmp_path, program):
     said = call(*words, 3, 6, "--friction", 0.1, "--strip", tmp_path / "strip")
     rows = [line.split() for line in said.splitlines()]
     assert rows[0][:3] == ["steel,", "1", "mm;"] and [row[0] for row in rows[3:5]] == ["3", "6"]
-    force, normal = [float(line.split("= ")[1]) for line in said.splitlines() if " force =" in line or "normal =" in line
+    force, normal = [float(line.split("= ")[1]) for line in said.splitlines() if "force =" in line or "normal =" in line
                      ][2:]
     assert force == pytest.approx(float(rows[4][1]) + 0.1 * normal, abs=0.1) and normal == pytest.approx(
         -float(rows[4][2]), abs=0.1)
