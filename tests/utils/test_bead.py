@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Draw-beads from their geometry: closed forms of bending under tension, geometry, the strip as a run, the command."""
+
+import csv
+import math
+import subprocess
+
+import numpy as np
+import pytest
+from helpers import call
+from scipy.optimize import brentq
+
+from dd3 import places
+from dd3.bead_path import Bead, Strip, flow
+from dd3.bead_strip import write_strip
+from dd3.bent_section import Section
+from dd3.errors import Problem
+from dd3.laws import Material
+
+pytestmark = pytest.mark.skipif(places.nearest(places.LIBRARY) is None, reason="libdd3laws.so is not built")
+STEEL = """*MATERIAL steel
+  young = 2.1e5
+  poisson = 0.3
+  yield = von_mises
+  hardening = swift K=565 e0=0.007117 n=0.259
+"""
+DP780 = STEEL.replace("swift K=565 e0=0.007117 n=0.259",
+                      "voce Y0=376.6 Rsat=113.3 CR=18.95\n  backstress = lemaitre_chaboche CX=91.56 Xsat=460.4")
+
+
+def perfect(law="von_mises", young=2e7):
+    """Return a material, nearly rigid-perfectly plastic of 300 MPa."""
+    return Material(STEEL.replace("2.1e5", f"{young}").replace("von_mises", law).replace(
+        "swift K=565 e0=0.007117 n=0.259", "perfect Y0=300"))
+
+
+@pytest.mark.parametrize("law, direction", (("von_mises", 0.0), ("von_mises", 30.0), ("hill48 r0=2 r45=1 r90=1.5", 0.0),
+                                            ("hill48 r0=2 r45=1 r90=1.5", 90.0)))
+def test_work(law, direction):
+    """Check that a bend and an unbending without tension cost Y' t^2/(4 r) each, in any direction."""
+    material, t, r = perfect(law), 1.0, 25.0
+    section = Section(material, t, layers=32, direction=direction)
+    section.bend(1 / r, 40)
+    section.bend(0.0, 40)
+    strength = 300 * material.yield_locus(720)["s22" if direction == 90 else "s11"].max()
+    assert section.force == pytest.approx(2 * strength * t**2 / (4 * r), rel=0.01)
+
+
+def test_tension():
+    """Check force and thinning over many bends of a thin sheet against their closed form: with v = T/(Y' t), d v =
+    (t0/4)(1 - v^2)^2 dk, t = t0 (1 - v^2)."""
+    section, bends, curvature = Section(perfect(young=2e6), 1.0), 30, 0.02
+    for i in range(bends):
+        section.bend((-1)**i * curvature, 6)
+        section.bend(0.0, 6)
+    part = brentq(lambda v: v / (2 * (1 - v * v)) + math.atanh(v) / 2 - 2 * bends * curvature / 4, 0.0, 0.99)
+    assert part > 0.25
+    assert section.force == pytest.approx(300 * 2 / math.sqrt(3) * part * (1 - part**2), rel=0.02)
+    assert math.log(section.stretch) == pytest.approx(-math.log(1 - part**2), rel=0.03)
+
+
+def test_pressure():
+    """Check that the stress across reaches the pressure of the tool, T over its radius, at the concave face."""
+    section = Section(Material(STEEL), 1.0, layers=32)
+    section.pull(100.0, 10)
+    section.bend(-0.15, 20)
+    pressure = -1.5 * section.radial[-1] + 0.5 * section.radial[-2]
+    tension = section.force - abs(section.moment * section.curvature)
+    assert pressure == pytest.approx(tension / (1 / 0.15 - 0.5), rel=0.02)
+    assert abs(section.radial[0]) < 0.05 * pressure
+
+
+def test_geometry():
+    """Check that the arcs touch the next tool, that tension straightens them, and that an elastic sheet passes free."""
+    bead = Bead(1.0, 5.0, 4.0, 1.5, 5.0, 0.1)
+    strip = Strip(Material(STEEL), bead, 0.0, 16, 20)
+    entry, arc, leaving = strip.arcs()
+    middles = np.array([[-bead.half, -strip.edge], [0.0, strip.middle - bead.height], [bead.half, -strip.edge]])
+    turn = entry.slope - entry.angle
+    first = middles[0] + (strip.edge - entry.radius) * np.array([math.sin(turn), math.cos(turn)])
+    second = middles[1] + (arc.radius - strip.middle) * np.array([math.sin(entry.slope), math.cos(entry.slope)])
+    assert np.linalg.norm(middles[1] - first) == pytest.approx(entry.radius + strip.middle)
+    assert np.linalg.norm(middles[2] - second) == pytest.approx(arc.radius + strip.edge)
+    assert not entry.straight and leaving.radius == pytest.approx(4.5 + 0.1 / (1 - math.cos(arc.slope)))
+    strip.moments, strip.forces = [100.0] * 3, [1000.0] * 3
+    entry, arc, leaving = strip.arcs()
+    assert (entry.radius, arc.radius, leaving.radius) == pytest.approx((4.5, 5.5, 4.5))
+    across, apart = middles[1] - middles[0]
+    assert entry.slope == pytest.approx(math.atan2(across, apart) - math.acos(10 / math.hypot(across, apart)))
+    hard = Material(STEEL.replace("swift K=565 e0=0.007117 n=0.259", "perfect Y0=1e6"))
+    assert abs(flow(hard, bead).restraint) < 0.01 * flow(Material(STEEL), bead).restraint
+
+
+@pytest.mark.slow
+def test_convergence():
+    """Check that layers and steps of the default are fine enough."""
+    bead = Bead(1.0, 5.0, 5.0, 1.5, 6.0, 0.1, 0.1)
+    default, fine = flow(Material(STEEL), bead), flow(Material(STEEL), bead, layers=32, steps=40)
+    assert default.restraint == pytest.approx(fine.restraint, rel=0.01)
+    assert default.uplift == pytest.approx(fine.uplift, rel=0.03)
+    assert default.thinning == pytest.approx(fine.thinning, rel=0.03)
+
+
+def test_refused():
+    """Check what is refused."""
+    for changed, said in (({"clearance": 0.9}, "below the thickness"), ({"height": 11.5}, "touch the walls"),
+                          ({"gap": 0.0}, "gap > 0")):
+        with pytest.raises(Problem, match=said):
+            Bead(**{"thickness": 1.0, "radius": 5.0, "shoulder": 5.0, "clearance": 1.5, "height": 6.0, "gap": 0.1,
+                    **changed})
+    with pytest.raises(Problem, match="it necks"):
+        flow(Material(STEEL), Bead(1.0, 2.0, 2.0, 1.1, 4.5, 0.1, 0.4))
+
+
+def test_command(tmp_path, program):
+    """Check the table and the lines of *DRAWBEAD, and that the program takes the strip."""
+    sheet = tmp_path / "sheet.dat"
+    sheet.write_text(STEEL)
+    words = "bead", sheet, "--thickness", 1, "--radius", 5, "--clearance", 1.5, "--height"
+    said = call(*words, 3, 6, "--friction", 0.1, "--strip", tmp_path / "strip")
+    rows = [line.split() for line in said.splitlines()]
+    assert rows[0][:3] == ["steel,", "1", "mm;"] and [row[0] for row in rows[3:5]] == ["3", "6"]
+    force, normal = [float(line.split("= ")[1]) for line in said.splitlines() if "force =" in line or "normal =" in line
+                     ][2:]
+    assert force == pytest.approx(float(rows[4][1]) + 0.1 * normal, abs=0.1) and normal == pytest.approx(
+        -float(rows[4][2]), abs=0.1)
+    done = subprocess.run([program, "--check", tmp_path / "strip" / "strip.dat"], capture_output=True, text=True,
+                          check=True)
+    assert "tool 'bead': 4 patches" in done.stdout
+    assert "at least 4" in call(*words, 6, "--layers", 2, expect=2)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("text, height, friction", ((STEEL, 6.0, 0.0), (STEEL, 6.0, 0.1), (DP780, 4.0, 0.1)))
+def test_strip(tmp_path, program, text, height, friction):
+    """Check forces and thinning against a strip that is drawn through the bead."""
+    material, bead = Material(text), Bead(1.0, 5.0, 5.0, 1.5, height, 0.1, friction)
+    deck = write_strip(material, bead, tmp_path)
+    subprocess.run([program, deck, "--threads", "1", "--quiet"], check=True)
+    with (tmp_path / "strip.out" / "history.csv").open() as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    columns = ("grip_ux", "tail_ux", "grip_rx", "bead_fz", "entry_fz", "exit_fz")
+    rows = [row for row in rows if row["phase"] == "pull"]
+    pulled, tail, *forces = np.array([[float(row[name]) for name in columns] for row in rows]).T
+    late = pulled > 0.7 * pulled[-1]
+    grip, press, before, behind = (np.average(force[late], weights=np.gradient(pulled)[late]) for force in forces)
+    thinning = -math.log(np.ptp(pulled[late]) / np.ptp(tail[late]))
+    found = flow(material, bead)
+    assert found.restraint == pytest.approx(grip, rel=0.04)
+    assert found.bead == pytest.approx(press, rel=0.05)
+    assert found.uplift == pytest.approx(press + before + behind, rel=0.07)
+    assert found.thinning == pytest.approx(thinning, rel=0.4)

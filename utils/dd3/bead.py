@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Compute what a round draw-bead does to a sheet: restraining force, uplift, strain of the thickness.
+
+    dd3 bead dc06 --thickness 0.8 --radius 5 --height 3 6 --friction 0.1
+    dd3 bead sheet.dat --thickness 1 --radius 5 --shoulder 4 --clearance 1.5 --height 6 --strip strip
+
+MATERIAL is a file with *MATERIAL, which may be a whole input file, or the name of a material of the library. Yield
+criterion, hardening and back-stresses are those of the program, by its library libdd3laws. --height is the depth by
+which the bead presses the sheet into the groove. The lines of *DRAWBEAD are printed. Its `normal` presses the sheet on
+the die, whose friction restrains it too: `force` is the restraint less that.
+
+--strip writes an input file of a strip that is drawn through the bead of the last height, to compare with.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from dd3.bead_path import LAYERS, STEPS, Bead, Result, flow
+from dd3.bead_strip import write_strip
+from dd3.command import new_parser
+from dd3.laws import Material
+from dd3.tools.set_material import found
+
+CLEARANCE, GAP = 1.2, 0.1  # over the thickness
+COLUMNS = ("height", "restraint", "uplift", "of it bead", "entry", "exit", "thickness strain", "plastic strain",
+           "largest")
+UNITS = ("mm", *5 * ("N/mm",), "-", "mean", "-")
+
+
+def row(height: float, result: Result) -> list[str]:
+    """Return the cells of a height, mm."""
+    forces = result.restraint, result.uplift, result.bead, result.entry, result.exit
+    strains = result.thinning, float(result.plastic.mean()), float(result.plastic.max())
+    return [f"{height:g}", *(f"{force:.1f}" for force in forces), *(f"{strain:.3f}" for strain in strains)]
+
+
+def block(bead: Bead, result: Result) -> str:
+    """Return the lines of *DRAWBEAD."""
+    force = max(result.restraint - bead.friction * result.uplift, 0.0)
+    return f"  force = {force:.4g}\n  rise = {bead.radius:g}\n  normal = {-result.uplift:.4g}"
+
+
+def main(words: Sequence[str] | None = None) -> None:
+    """Compute the bead of the command line."""
+    parser = new_parser("bead", __doc__)
+    parser.add_argument("material", type=Path, metavar="MATERIAL", help="file, or name of a material of the library")
+    parser.add_argument("--name", help="of the material, if the file has several")
+    parser.add_argument("--thickness", type=float, required=True, metavar="mm", help="of the sheet")
+    parser.add_argument("--radius", type=float, required=True, metavar="mm", help="of the bead")
+    parser.add_argument("--height", type=float, nargs="+", required=True, metavar="mm",
+                        help="by which the bead presses the sheet into the groove; several make a table")
+    parser.add_argument("--shoulder", type=float, metavar="mm", help="radius of the edges of the groove (--radius)")
+    parser.add_argument("--clearance", type=float, metavar="mm",
+                        help=f"between the side of the bead and the wall of the groove ({CLEARANCE:g} thicknesses)")
+    parser.add_argument("--gap", type=float, metavar="mm",
+                        help=f"between the plates beside the groove, beyond the thickness ({GAP:g} thicknesses)")
+    parser.add_argument("--friction", type=float, default=0.0, metavar="MU", help="coefficient (0)")
+    parser.add_argument("--clamping", type=float, default=0.0, metavar="N/mm",
+                        help="force of the plates on the sheet before the bead (0)")
+    parser.add_argument("--direction", type=float, default=0.0, metavar="DEGREES",
+                        help="of the motion to the rolling direction (0)")
+    parser.add_argument("--layers", type=int, default=LAYERS, help=f"through the thickness ({LAYERS})")
+    parser.add_argument("--steps", type=int, default=STEPS, help=f"of each bending and unbending ({STEPS})")
+    parser.add_argument("--strip", type=Path, metavar="FOLDER", help="write the input file of a strip and its tools")
+    options = parser.parse_args(words)
+    if min(options.layers, options.steps) < 4:
+        parser.error("--layers and --steps take at least 4")
+    material = Material(file=found(options.material), name=options.name)
+    t = options.thickness
+    bead = Bead(t, options.radius, options.shoulder or options.radius,
+                CLEARANCE * t if options.clearance is None else options.clearance, options.height[0],
+                GAP * t if options.gap is None else options.gap, options.friction, options.clamping)
+    beads = [replace(bead, height=height) for height in options.height]
+    results = [flow(material, one, options.direction, options.layers, options.steps) for one in beads]
+    rows = [COLUMNS, UNITS, *(row(one.height, result) for one, result in zip(beads, results))]
+    widths = [max(len(cells[i]) for cells in rows) for i in range(len(COLUMNS))]
+    print(f"{material.name}, {t:g} mm; bead of {bead.radius:g} mm, shoulders of {bead.shoulder:g} mm, "
+          f"{2 * bead.half:g} mm apart; friction {bead.friction:g}")
+    print(*("  ".join(cell.rjust(width) for cell, width in zip(cells, widths)) for cells in rows), sep="\n")
+    for one, result in zip(beads, results):
+        print(f"height {one.height:g} mm, *DRAWBEAD:\n{block(one, result)}")
+    if options.strip:
+        print(write_strip(material, beads[-1], options.strip))
