@@ -153,7 +153,7 @@ def turned(bench):
     apart = distance(np.asarray(one.points), np.asarray(other.points))
     stress = np.abs(one.cell_data["equivalent_stress"] - other.cell_data["equivalent_stress"]).max()
     check_values(Value("turned: distance from the release of the strip as it is, mm", 0, apart, 1e-8, absolute=True),
-                 Value("turned: largest difference of the equivalent stress, MPa", 0, float(stress), 1e-6, absolute=True))
+                 Value("turned: largest difference of the stress, MPa", 0, float(stress), 1e-6, absolute=True))
 
 
 def refined(bench):
