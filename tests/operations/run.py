@@ -8,6 +8,7 @@
 - released: a strip drawn in one run and released in another has the shape of the strip that one run draws and releases
   but for the friction of the tools that are withdrawn there, within 1 % of the springback; the same where it is moved and
   turned between the two.
+- turned: a bent strip that is turned about an oblique axis is released as the one that is not: equal shape and strains.
 - refined: the same, within 2.5 %, of a strip whose elements were divided while it was drawn; its mesh goes on.
 - cut_wall: the wall of a drawn strip, cut free, curls as it does on the whole strip; its stresses carry no moment.
 - cut_bend: a strip bent to an arc, cut obliquely and released, springs back by M/(E' I).
@@ -141,6 +142,18 @@ def released(bench):
                            0.01 * springback, absolute=True),
                      Value(f"{name}: distance from the sheet where it was, mm", 0, distance(found, first), 1e-4,
                            absolute=True))
+
+
+def turned(bench):
+    """Release a bent strip of an orthotropic material as it is, and turned about an oblique axis and moved."""
+    bench.run("arc", MATERIAL + BEND.replace("60 6 1", "30 4 1"))
+    tight = "*NEWTON\n  tolerance = 1e-9\n" + UNLOAD.replace("= on", "= at_once")
+    one, other = (dd3.open(bench.run(name, f"*START\n  from = arc.out\n{place}{MATERIAL}{tight}").folder).fields[-1]
+                  for name, place in (("arc_free", ""), ("arc_turned", "  turn = 3 -2 5  1 2 3  37\n  move = 4 5 6\n")))
+    apart = distance(np.asarray(one.points), np.asarray(other.points))
+    stress = np.abs(one.cell_data["equivalent_stress"] - other.cell_data["equivalent_stress"]).max()
+    check_values(Value("turned: distance from the release of the strip as it is, mm", 0, apart, 1e-8, absolute=True),
+                 Value("turned: largest difference of the stress, MPa", 0, float(stress), 1e-6, absolute=True))
 
 
 def refined(bench):
@@ -326,7 +339,7 @@ def refused(bench):
     bench.run("unended_last", start.format("unended.out\n  at = last") + UNLOAD, codes=(0,))
 
 
-TESTS = (released, refined, cut_wall, cut_bend, cut_on_sheet, cut_by_elements, dynain, restruck, refused)
+TESTS = (released, turned, refined, cut_wall, cut_bend, cut_on_sheet, cut_by_elements, dynain, restruck, refused)
 
 
 def main():
