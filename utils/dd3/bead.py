@@ -16,13 +16,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from dd3.bead_path import LAYERS, STEPS, Bead, Result, flow
+from dd3.bead_path import CLEARANCE, GAP, LAYERS, STEPS, Bead, Result, flow
 from dd3.bead_strip import write_strip
 from dd3.command import new_parser
 from dd3.laws import Material
 from dd3.tools.set_material import found
 
-CLEARANCE, GAP = 1.2, 0.1  # over the thickness
 COLUMNS = ("height", "restraint", "uplift", "of it bead", "entry", "exit", "thickness strain", "plastic strain",
            "largest")
 UNITS = ("mm", *5 * ("N/mm",), "-", "mean", "-")
@@ -37,8 +36,7 @@ def row(height: float, result: Result) -> list[str]:
 
 def block(bead: Bead, result: Result) -> str:
     """Return the lines of *DRAWBEAD."""
-    force = max(result.restraint - bead.friction * result.uplift, 0.0)
-    return f"  force = {force:.4g}\n  rise = {bead.radius:g}\n  normal = {-result.uplift:.4g}"
+    return f"  force = {result.pull(bead.friction):.4g}\n  rise = {bead.radius:g}\n  normal = {-result.uplift:.4g}"
 
 
 def main(words: Sequence[str] | None = None) -> None:

@@ -21,6 +21,7 @@ from dd3.bent_section import Section, parts
 from dd3.errors import Problem
 from dd3.laws import Material
 
+CLEARANCE, GAP = 1.2, 0.1  # over the thickness, of a bead for which they are not given
 LAYERS, STEPS = 16, 20  # through the thickness; to a bend
 PULLS = 4  # steps of the friction at a contact
 PASSES, SAME, ZERO = 20, 2e-3, 1e-4  # largest number of passes; change of the force at the last one, over the uplift
@@ -81,6 +82,10 @@ class Result:
     def uplift(self) -> float:
         """Return the force by which the upper tool is lifted, N/mm."""
         return self.bead + self.entry + self.exit
+
+    def pull(self, friction: float) -> float:
+        """Return the restraint that is left where the uplift presses the sheet on a tool with a friction, N/mm."""
+        return max(self.restraint - friction * self.uplift, 0.0)
 
 
 @dataclass(frozen=True)

@@ -2,25 +2,25 @@
 """Draw-beads that are proposed on the binder of a part: along those parts of its rim where much is drawn in against the
 rest, and which are straight. A corner restrains the sheet by the compression of its flange.
 
-The draw-in is that of the estimate of the blank in one step, or of a finished run. The beads are round ones, in which
-the sheet is bent and unbent three times (Keeler, The science of forming: how draw beads actually work). The work of
-bending of a rigid-plastic sheet in plane strain, sigma t^2/(4 r) per length and width, and the friction of a rope about
-the arcs give the restraint (compare Stoughton, Proc. 15th IDDRG (1988) 205-215).
+The draw-in is that of the estimate of the blank in one step, or of a finished run. The beads are round ones; restraint
+and uplift are those of the path of the sheet through them (bead_path.py).
 """
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 from scipy.spatial import cKDTree
 
+from dd3.bead_path import CLEARANCE, GAP, Bead, Result, flow
+from dd3.laws import Material
 from dd3.tools.set_blank import Blank, needed
-from dd3.tools.set_material import STEPS, STRAIN
+from dd3.tools.set_material import STEEL, STEPS, STRAIN
 
-# Radius of a bead, distance of its middle from the rim of what is covered at the end of the draw, and margin of the
-# blank beyond that rim, with which the sheet does not leave the bead, over the thickness.
-RADIUS, DISTANCE, MARGIN = 5.0, 10.0, 15.0
-# Arcs about which a round bead bends the sheet: its entry, itself, its exit, radian.
-ARCS = np.pi / 2, np.pi, np.pi / 2
+# Radius and height of a bead, radius of the edges of its groove, distance of its middle from the rim of what is covered
+# at the end of the draw, and margin of the blank beyond that rim, with which the sheet does not leave the bead, over
+# the thickness.
+RADIUS, SHOULDER, DISTANCE, MARGIN = 5.0, 3.0, 10.0, 15.0
 # Part of the largest draw-in by which the least one is below it, from which on beads are proposed.
 UNEVEN = 0.25
 # Radius of a convex rim over its draw-in below which it is a corner: the flange, compressed by ln(1 + 1/3), restrains
@@ -33,6 +33,7 @@ BLOCK = """*DRAWBEAD {name}
   points = {points}
   force = ${{bead}}
   rise = {rise:g}
+  normal = -${{lift}}
   tool = holder
   from = draw
 
@@ -40,7 +41,7 @@ BLOCK = """*DRAWBEAD {name}
 
 
 @dataclass
-class Bead:
+class Line:
     """A line in plan (n, 2), mm, and the largest draw-in of the rim along it, mm."""
 
     points: np.ndarray
@@ -54,11 +55,12 @@ class Bead:
 
 @dataclass
 class Beads:
-    """Draw-beads of a set of tools: lines, restraint, N/mm, and this over the largest force of the sheet in plane
-    strain; radius, mm; why there are none."""
+    """Draw-beads of a set of tools: lines, restraint beside that by the uplift, uplift, N/mm, and restraint over the
+    largest force of the sheet in plane strain; radius, mm; why there are none."""
 
-    lines: list[Bead] = field(default_factory=list)
+    lines: list[Line] = field(default_factory=list)
     force: float = 0.0
+    lift: float = 0.0
     part: float = 0.0
     radius: float = 0.0
     reason: str = ""
@@ -73,11 +75,13 @@ class Beads:
         """Return the lines of the report."""
         if not self.lines:
             return [("beads", f"none, as {self.reason}; without --beads the blank has a smaller margin")]
-        total = self.force * sum(bead.length for bead in self.lines)
+        length = sum(bead.length for bead in self.lines)
         return [("beads", f"restraint {self.force:.3g} N/mm, {100 * self.part:.2g} % of the largest force of the sheet "
-                 f"in plane strain, {total:.3g} N in all: round beads of {self.radius:g} mm radius"),
-                ("", "they may tear a part that does without: compare with --set bead=0. They lift the holder, which "
-                 "is not taken into account"),
+                 f"in plane strain, {self.force * length:.3g} N in all: round beads of {self.radius:g} mm radius and "
+                 "height"),
+                ("", f"they lift the holder by {self.lift:.3g} N/mm, {self.lift * length:.3g} N in all, which the "
+                 "press gives beside its force"),
+                ("", "they may tear a part that does without: compare with --set bead=0 --set lift=0"),
                 *((f"bead_{number}", f"{bead.length:.3g} mm, from x y {pair(bead.points[0])} to "
                    f"{pair(bead.points[-1])}, draw-in up to {bead.draw_in:.3g} mm")
                   for number, bead in enumerate(self.lines, 1))]
@@ -106,7 +110,7 @@ def proposed(blank: Blank, thickness: float, drawn: tuple[np.ndarray, np.ndarray
         return Beads(reason=f"the draw-in is even, {least:.3g} to {most:.3g} mm")
     chosen = (draw_in > (least + most) / 2) & (curvature * draw_in < 1 / CORNER)
     away = DISTANCE * thickness
-    found = [Bead(needed(rim[part] + away * out[part], SIMPLE * thickness), float(draw_in[part].max()))
+    found = [Line(needed(rim[part] + away * out[part], SIMPLE * thickness), float(draw_in[part].max()))
              for part in stretches(chosen)]
     found = [bead for bead in found if bead.length >= SHORTEST * away]
     middle = (least + most) / 2
@@ -144,18 +148,14 @@ def stretches(chosen: np.ndarray) -> list[np.ndarray]:
     return [part for part in np.split(order, ends) if chosen[part[0]]]
 
 
-def restraint(stress: Callable[[float], float], thickness: float, friction: float) -> float:
-    """Return the restraining force of a round bead, N/mm; `stress` by the strain in plane strain, MPa."""
-    radius = (RADIUS + 0.5) * thickness  # of the middle of the sheet
-    step = thickness / (4 * radius)  # mean strain over the thickness of one bending
-    force = strain = 0.0
-    for arc in ARCS:
-        for friction_factor in (np.exp(friction * arc), 1.0):  # the sheet is bent at the arc's begin, unbent at its end
-            force = (force + stress(strain + step / 2) * thickness * step) * friction_factor
-            strain += step
-    return float(force)
+def through(path: Path | None, thickness: float, friction: float) -> Result:
+    """Return what the beads do to a sheet, mm, of the material of a file, or the one that is assumed."""
+    material, radius = Material(file=path) if path else Material(STEEL), RADIUS * thickness
+    return flow(material, Bead(thickness, radius, SHOULDER * thickness, CLEARANCE * thickness, radius, GAP * thickness,
+                               friction))
 
 
 def largest(stress: Callable[[float], float], thickness: float) -> float:
-    """Return the largest force of a sheet in plane strain, N/mm, at which it necks; `stress` as for `restraint`."""
+    """Return the largest force of a sheet in plane strain, N/mm, at which it necks; `stress` by the strain in plane
+    strain, MPa."""
     return max(stress(strain) * np.exp(-strain) for strain in np.linspace(0.0, STRAIN, STEPS + 1)) * thickness

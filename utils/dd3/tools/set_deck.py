@@ -155,7 +155,9 @@ def deck(options: ToolSettings, tools: ToolSet, beads: Beads, command: str) -> s
     pressed |= {"pad": tools.pad_force} if "pad" in pressed and tools.pad_force else {}
     forces = [f"  {name} = {force:.3g}     # N, {force / tools.area[name]:.2g} MPa\n"
               for name, force in pressed.items()]
-    forces += [f"  bead = {beads.force:.3g}            # N/mm, restraint of the draw-beads\n"] if beads.lines else []
+    forces += [f"  bead = {beads.force:.3g}            # N/mm, restraint of the draw-beads\n",
+               f"  lift = {beads.lift:.3g}            # N/mm, by which they press the sheet on the die\n"
+               ] if beads.lines else []
     presses = [f"  press = {name} 0 0 {'-' if name == 'holder' else ''}${{{name}}}\n" for name in pressed]
     inclined = tools.blank.inclined
     middle = pair(tools.blank.placed(np.array([(low + high) / 2]))[0])

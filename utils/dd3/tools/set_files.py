@@ -118,7 +118,7 @@ def program_of(options: ToolSettings) -> Path | None:
 
 @doing("proposing draw-beads")
 def beads_of(tools: tool_set.ToolSet, options: ToolSettings) -> beads.Beads:
-    """Return the draw-beads that are proposed, with their restraint by the material."""
+    """Return the draw-beads that are proposed, with their forces by the material."""
     if "holder" not in tools.surfaces or "pad" in tools.surfaces:
         return beads.Beads(reason="there is no holder around the part that carries them")
     drawn = None if options.beads == ESTIMATE else draw_in_of(options.beads)
@@ -127,9 +127,10 @@ def beads_of(tools: tool_set.ToolSet, options: ToolSettings) -> beads.Beads:
         program = program_of(options)
         if not program:
             raise Problem("--beads needs the program for the restraint; --program names it")
+        result = beads.through(options.material, options.thickness, set_deck.FRICTION)
+        found.force, found.lift = result.pull(set_deck.FRICTION), result.uplift
         stress = set_material.stress_of(program, options.material)
-        found.force = beads.restraint(stress, options.thickness, set_deck.FRICTION)
-        found.part = found.force / beads.largest(stress, options.thickness)
+        found.part = result.restraint / beads.largest(stress, options.thickness)
     return found
 
 
