@@ -211,7 +211,11 @@ contains
           "At the end of the run, or where it stops, adiabatic heating leaves less than a "// &
           "tenth of the flow stress at a point: the sheet is near melting.", &
           "Check `heat_capacity`, `density` and the law `temperature`; a slow process is not "// &
-          "adiabatic.")]
+          "adiabatic."), &
+      row("W129", "spacer that touches from the start", &
+          "At the start of a phase the spacers of a pressed tool push it back by more than its "// &
+          "force.", &
+          "A `position` of the tool above the gap of the spacer, or a smaller gap.")]
   end function sheet_warnings
 
   !> Return the notes.

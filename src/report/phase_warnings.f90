@@ -22,6 +22,7 @@ module dd3_report_phase_warnings
   use dd3_model_terms_released, only : has_released
   use dd3_model_terms_viscous, only : viscous_work
   use dd3_model_tolerances, only : tangential
+  use dd3_model_tool_supports, only : spacer_force
   use dd3_process_phase_end, only : phase_is_over, until_met, until_tolerance, until_value
   use dd3_process_phase_start, only : gap_of_tool
   use dd3_report_heated_sheet, only : heat_warning
@@ -43,6 +44,9 @@ module dd3_report_phase_warnings
   !> Increase of plastic strain in a release that is reported.
   real(wp), parameter :: notable_strain = 1.0e-3_wp
 
+  !> Part by which the force of spacers exceeds that of their tool that is reported.
+  real(wp), parameter :: notable_push = 1.0e-2_wp
+
   !> Work of viscous forces over the elastic energy released that is reported.
   real(wp), parameter :: notable_damping = 1.0e-3_wp
 
@@ -63,6 +67,7 @@ contains
           "' keeps directions where earlier phases displaced them: "//phase%kept_displacements// &
           " (`free` frees them)")
       call notes%add_new("W102", press_warning(model, state))
+      call notes%add_new("W129", spacer_warning(model, state))
       call notes%add_new("W103", support_warning(model, state))
       call notes%add_new("N102", unload_note(model, state))
       call notes%add_new("W104", imbalance_warning(model, state))
@@ -159,6 +164,33 @@ contains
       end do
     end associate
   end function press_warning
+
+  !> Return a warning if the spacers of a pressed tool push it back at the start of a phase by more
+  !> than its force, which no equilibrium leaves; empty otherwise.
+  function spacer_warning(model, state) result(text)
+    type(model_t), intent(in) :: model
+    !> State at the start of the phase.
+    type(state_t), intent(in) :: state
+    character(len=:), allocatable :: text
+
+    real(wp) :: force, load
+    integer :: tool
+
+    text = ""
+    associate (phase => model%phase(state%phase))
+      do tool = 1, model%n_tool
+        if (.not. phase%pressed(tool)) cycle
+        force = spacer_force(phase, state%tools, tool)
+        load = norm2(state%tools%load(:, tool))
+        if (.not. phase%keeps_tool_load(tool)) load = max(load, norm2(phase%tool_load_end(:, tool)))
+        if (force <= (1.0_wp + notable_push)*load) cycle
+        text = "at the start of phase '"//phase%name//"' spacers push tool '"// &
+            model%tool(tool)%name//"' back by "//to_text(force)//" N, more than its force of "// &
+            to_text(load)//" N: it begins below the gap of the spacer, by which it is moved back"
+        return
+      end do
+    end associate
+  end function spacer_warning
 
   !> Return a warning if neither supports nor tools in contact hold the sheet, or a part of it, at
   !> the start of a phase; empty otherwise, and where it is laid down.

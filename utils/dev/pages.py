@@ -101,7 +101,6 @@ PAGES = {
         "cmake --preset petsc", "cmake --build --preset petsc",
         f"tests/benchmark/processes.py --parallel build/petsc/dd3imp{RUN}")),
     "rail": forming("rail", 75),
-    "redesign": Page(0, "", ()),  # measured once
     "robustness": Page(10, "src/material tests/benchmark/robustness.f90 tests/benchmark/parameter_sets.f90", (
         "cmake --build {build} --target benchmark_robustness",
         "tests/benchmark/robustness.py --build {build} --write")),
