@@ -4,7 +4,7 @@ module dd3_input_fill_phase
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : same_name
   use dd3_settings_accuracy, only : set_by_accuracy
-  use dd3_input_block, only : block_t
+  use dd3_input_block, only : block_t, entry_t
   use dd3_input_case, only : case_t, phase_spec_t, contact_spec_t, tool_name_t, &
       tool_pin_t, tool_spacer_t, tool_tilt_t, tool_vector_t
   use dd3_settings_limits, only : limits_spec_t, limit_spec_t
@@ -75,7 +75,7 @@ contains
     type(case_t), intent(in) :: case
     type(block_t), intent(in) :: block
 
-    integer :: e, i, tool
+    integer :: e, i
 
     allocate (phase%hold(n_valid("hold")), phase%release(n_valid("release")))
     allocate (phase%move(n_valid("move")), phase%press(n_valid("press")))
@@ -89,72 +89,11 @@ contains
       associate (entry => block%entry(e))
         if (.not. entry%valid .or. size(entry%value) == 0) cycle
         i = n_valid(entry%key, e)
-        tool = tool_position(case, entry%value(1)%text)
-        associate (name => entry%value(1)%text, at => entry%value(1)%at, number => entry%number)
-          select case (entry%key)
-          case ("hold")
-            phase%hold(i) = tool_name_t(tool, at)
-          case ("release")
-            phase%release(i) = tool_name_t(tool, at)
-          case ("move")
-            phase%move(i) = tool_vector_t(tool, number(:3), at)
-          case ("press")
-            phase%press(i) = tool_vector_t(tool, number(:3), at)
-          case ("gap")
-            phase%gap(i)%tool = tool
-            phase%gap(i)%other = tool_position(case, entry%value(2)%text)
-            phase%gap(i)%value = number(1)
-            phase%gap(i)%in_thicknesses = size(entry%value) > 3
-            phase%gap(i)%at = at
-          case ("turn")
-            phase%turn(i)%tool = tool
-            phase%turn(i)%value = number(:7)
-            phase%turn(i)%at = at
-          case ("tilt")
-            phase%tilt(i)%tool = tool
-            phase%tilt(i)%pivot = number(:3)
-            phase%tilt(i)%stiffness = number(4)
-            phase%tilt(i)%at = at
-          case ("pin")
-            phase%pin(i) = tool_pin_t(tool, number(:3), number(4), at)
-          case ("stroke_table")
-            phase%stroke(i)%tool = tool
-            phase%stroke(i)%table = number(:entry%n_number)
-            phase%stroke(i)%at = at
-          case ("spacer")
-            phase%spacer(i) = tool_spacer_t(tool, tool_position(case, entry%value(2)%text), &
-                number(1), number(2), number(3:4), at)
-          case ("displace", "place")
-            ! The places follow the displacements.
-            if (entry%key == "place") i = i + n_valid("displace")
-            phase%displace(i)%is_coordinate = entry%key == "place"
-            phase%displace(i)%set = name
-            phase%displace(i)%axis = nint(number(1))
-            phase%displace(i)%value = number(2)
-            phase%displace(i)%at = at
-          case ("free")
-            phase%free(i)%set = name
-            phase%free(i)%direction(nint(number)) = .true.
-            phase%free(i)%at = at
-          case ("load")
-            phase%load(i)%set = name
-            phase%load(i)%force = number(:3)
-            phase%load(i)%at = at
-          case ("pressure")
-            phase%pressure(i)%set = name
-            phase%pressure(i)%value = number(1)
-            phase%pressure(i)%at = at
-          case ("rotate", "bend")
-            ! The bends follow the rotations.
-            if (entry%key == "bend") i = i + n_valid("rotate")
-            phase%motion(i)%set = name
-            phase%motion(i)%bends = entry%key == "bend"
-            phase%motion(i)%value = number(:7)
-            phase%motion(i)%at = at
-          case default
-            ! Other keys are filled by the other procedures.
-          end select
-        end associate
+        ! The places follow the displacements, the bends the rotations.
+        if (entry%key == "place") i = i + n_valid("displace")
+        if (entry%key == "bend") i = i + n_valid("rotate")
+        call fill_tool_entry(phase, case, entry, i)
+        call fill_set_entry(phase, entry, i)
       end associate
     end do
     do i = 1, size(case%tool)
@@ -190,6 +129,93 @@ contains
     end function n_valid
 
   end subroutine fill_entries
+
+  !> Fill entry i of a key that names a tool.
+  subroutine fill_tool_entry(phase, case, entry, i)
+    type(phase_spec_t), intent(inout) :: phase
+    type(case_t), intent(in) :: case
+    type(entry_t), intent(in) :: entry
+    integer, intent(in) :: i
+
+    integer :: tool
+
+    tool = tool_position(case, entry%value(1)%text)
+    associate (at => entry%value(1)%at, number => entry%number)
+      select case (entry%key)
+      case ("hold")
+        phase%hold(i) = tool_name_t(tool, at)
+      case ("release")
+        phase%release(i) = tool_name_t(tool, at)
+      case ("move")
+        phase%move(i) = tool_vector_t(tool, number(:3), at)
+      case ("press")
+        phase%press(i) = tool_vector_t(tool, number(:3), at)
+      case ("gap")
+        phase%gap(i)%tool = tool
+        phase%gap(i)%other = tool_position(case, entry%value(2)%text)
+        phase%gap(i)%value = number(1)
+        phase%gap(i)%in_thicknesses = size(entry%value) > 3
+        phase%gap(i)%at = at
+      case ("turn")
+        phase%turn(i)%tool = tool
+        phase%turn(i)%value = number(:7)
+        phase%turn(i)%at = at
+      case ("tilt")
+        phase%tilt(i)%tool = tool
+        phase%tilt(i)%pivot = number(:3)
+        phase%tilt(i)%stiffness = number(4)
+        phase%tilt(i)%at = at
+      case ("pin")
+        phase%pin(i) = tool_pin_t(tool, number(:3), number(4), at)
+      case ("stroke_table")
+        phase%stroke(i)%tool = tool
+        phase%stroke(i)%table = number(:entry%n_number)
+        phase%stroke(i)%at = at
+      case ("spacer")
+        phase%spacer(i) = tool_spacer_t(tool, tool_position(case, entry%value(2)%text), &
+            number(1), number(2), number(3:4), at)
+      case default
+        ! Other keys are filled by the other procedures.
+      end select
+    end associate
+  end subroutine fill_tool_entry
+
+  !> Fill entry i of a key that names a set.
+  subroutine fill_set_entry(phase, entry, i)
+    type(phase_spec_t), intent(inout) :: phase
+    type(entry_t), intent(in) :: entry
+    integer, intent(in) :: i
+
+    associate (name => entry%value(1)%text, at => entry%value(1)%at, number => entry%number)
+      select case (entry%key)
+      case ("displace", "place")
+        phase%displace(i)%is_coordinate = entry%key == "place"
+        phase%displace(i)%set = name
+        phase%displace(i)%axis = nint(number(1))
+        phase%displace(i)%value = number(2)
+        phase%displace(i)%at = at
+      case ("free")
+        phase%free(i)%set = name
+        phase%free(i)%direction(nint(number)) = .true.
+        phase%free(i)%at = at
+      case ("load")
+        phase%load(i)%set = name
+        phase%load(i)%force = number(:3)
+        phase%load(i)%at = at
+      case ("pressure")
+        phase%pressure(i)%set = name
+        phase%pressure(i)%value = number(1)
+        phase%pressure(i)%at = at
+      case ("rotate", "bend")
+        phase%motion(i)%set = name
+        phase%motion(i)%bends = entry%key == "bend"
+        phase%motion(i)%value = number(:7)
+        phase%motion(i)%at = at
+      case default
+        ! Other keys are filled by the other procedures.
+      end select
+    end associate
+  end subroutine fill_set_entry
 
   subroutine fill_until(until, case, block)
     type(until_spec_t), intent(inout) :: until
