@@ -21,7 +21,8 @@ Every deck of cases/ and bad_input/ is a case or is named in a file beside it, a
 `--program`, but for those of benchmark/, build/ and utils/, says what it is; a file that does not is an error.
 
 Tests with the label `slow`, but for those of several processes, are divided into parts by labels `part_0`, `part_1`,
-...; utils/run_tests.sh runs one of them, chosen by the commit. `cost` is their time in seconds beside another test, by default `timeout`.
+...; utils/run_tests.sh runs one of them, chosen by the commit. `cost` is their time in seconds beside another test, by
+default `timeout`.
 """
 import json
 import pathlib

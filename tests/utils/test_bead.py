@@ -124,6 +124,9 @@ def test_command(tmp_path, program):
                      ][2:]
     assert force == pytest.approx(float(rows[4][1]) + 0.1 * normal, abs=0.1) and normal == pytest.approx(
         -float(rows[4][2]), abs=0.1)
+    assert "shoulder, height and gap > 0" in call(*words, 3, "--shoulder", 0, expect=2)
+    sheet.write_text(STEEL.rstrip() + "\n  rate = cowper_symonds C=100 p=4\n")
+    assert "strain rate is not followed" in call(*words, 3) and "strain rate" not in said
     done = subprocess.run([program, "--check", tmp_path / "strip" / "strip.dat"], capture_output=True, text=True,
                           check=True)
     assert "tool 'bead': 4 patches" in done.stdout

@@ -36,7 +36,7 @@ def row(height: float, result: Result) -> list[str]:
 
 def block(bead: Bead, result: Result) -> str:
     """Return the lines of *DRAWBEAD."""
-    return f"  force = {result.pull(bead.friction):.4g}\n  rise = {bead.radius:g}\n  normal = {-result.uplift:.4g}"
+    return f"  force = {result.force(bead.friction):.4g}\n  rise = {bead.radius:g}\n  normal = {-result.uplift:.4g}"
 
 
 def main(words: Sequence[str] | None = None) -> None:
@@ -66,7 +66,7 @@ def main(words: Sequence[str] | None = None) -> None:
         parser.error("--layers and --steps take at least 4")
     material = Material(file=found(options.material), name=options.name)
     t = options.thickness
-    bead = Bead(t, options.radius, options.shoulder or options.radius,
+    bead = Bead(t, options.radius, options.radius if options.shoulder is None else options.shoulder,
                 CLEARANCE * t if options.clearance is None else options.clearance, options.height[0],
                 GAP * t if options.gap is None else options.gap, options.friction, options.clamping)
     beads = [replace(bead, height=height) for height in options.height]
@@ -75,6 +75,8 @@ def main(words: Sequence[str] | None = None) -> None:
     widths = [max(len(cells[i]) for cells in rows) for i in range(len(COLUMNS))]
     print(f"{material.name}, {t:g} mm; bead of {bead.radius:g} mm, shoulders of {bead.shoulder:g} mm, "
           f"{2 * bead.half:g} mm apart; friction {bead.friction:g}")
+    if material.has_rate:
+        print("the strain rate is not followed: the flow stress is that of a slow test")
     print(*("  ".join(cell.rjust(width) for cell, width in zip(cells, widths)) for cells in rows), sep="\n")
     for one, result in zip(beads, results):
         print(f"height {one.height:g} mm, *DRAWBEAD:\n{block(one, result)}")

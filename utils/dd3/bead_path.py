@@ -83,8 +83,9 @@ class Result:
         """Return the force by which the upper tool is lifted, N/mm."""
         return self.bead + self.entry + self.exit
 
-    def pull(self, friction: float) -> float:
-        """Return the restraint that is left where the uplift presses the sheet on a tool with a friction, N/mm."""
+    def force(self, friction: float) -> float:
+        """Return `force` of *DRAWBEAD, N/mm: the restraint less the friction on the die, on which `normal`, the uplift,
+        presses the sheet."""
         return max(self.restraint - friction * self.uplift, 0.0)
 
 

@@ -107,8 +107,9 @@ def missing(module: str) -> str:
     except metadata.PackageNotFoundError:  # not installed by pip
         if sys.prefix != sys.base_prefix:
             return f"{name} is {state}: pip install --upgrade {name}"
-        return (f"{name} is {state}: python3 -m venv --system-site-packages dd3_env (Debian: of python3-venv) && "
-                f"dd3_env/bin/pip install --upgrade {name}, and source dd3_env/bin/activate before dd3")
+        return (f"{name} is {state}: python3 -m venv --system-site-packages dd3_env && "
+                f"dd3_env/bin/pip install --upgrade {name}, and source dd3_env/bin/activate before dd3; on Debian "
+                "venv is in the package python3-venv")
     return f"{name} is {state}: pip install --upgrade " + (f'"dd3imp[{EXTRAS[name]}]"' if name in EXTRAS else name)
 
 

@@ -128,7 +128,7 @@ def beads_of(tools: tool_set.ToolSet, options: ToolSettings) -> beads.Beads:
         if not program:
             raise Problem("--beads needs the program for the restraint; --program names it")
         result = beads.through(options.material, options.thickness, set_deck.FRICTION)
-        found.force, found.lift = result.pull(set_deck.FRICTION), result.uplift
+        found.force, found.lift = result.force(set_deck.FRICTION), result.uplift
         stress = set_material.stress_of(program, options.material)
         found.part = result.restraint / beads.largest(stress, options.thickness)
     return found
