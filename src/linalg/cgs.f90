@@ -4,13 +4,14 @@
 !>
 !> A cycle ends with convergence, a near breakdown (rho or sigma vanishes), divergence, stagnation,
 !> or a recursive residual that the true one does not confirm. The next cycle starts from the best
-!> solution with a new shadow residual, which has a random part from the second restart on.
+!> solution with a new shadow residual, which has a random part from the second restart on. A
+!> solution that a cycle could not improve counts as converged if its residual is round-off.
 module dd3_linalg_cgs
   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
   use dd3_base_kinds, only : wp, i8
   use dd3_linalg_matrix, only : block_matrix_t, multiply
   use dd3_linalg_preconditioner, only : preconditioner_t
-  use dd3_linalg_residual, only : dot, true_residual
+  use dd3_linalg_residual, only : round_off_residual, dot, true_residual
   use dd3_linalg_solver, only : solver_report_t
   implicit none
   private
@@ -96,6 +97,7 @@ contains
     call start(self, matrix, preconditioner, b, x)
     self%iterations = 0
     self%restarts = 0
+    self%converged = .false.
     ended = ended_converged
     do while (self%residual > self%tolerance)
       self%shadow = self%r
@@ -111,10 +113,12 @@ contains
       end if
       if (ended == ended_converged .and. self%residual > slack*self%tolerance) ended = ended_drifted
       if (ended == ended_converged .or. ended == ended_spent) exit
+      self%converged = self%residual <= round_off_residual(matrix, b, x)
+      if (self%converged) exit
       if (self%restarts == restart_limit) exit
       self%restarts = self%restarts + 1
     end do
-    self%converged = self%residual <= slack*self%tolerance
+    self%converged = self%converged .or. self%residual <= slack*self%tolerance
     self%reason = ""
     if (.not. self%converged) self%reason = ended_text(ended)
   end subroutine cgs_solve

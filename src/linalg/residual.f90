@@ -1,11 +1,15 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Dot product and residual of a linear system.
+!> Dot product and residual of a linear system, and the residual that round-off allows.
 module dd3_linalg_residual
   use dd3_base_kinds, only : wp
   use dd3_linalg_matrix, only : block_matrix_t, multiply
   implicit none
   private
-  public :: dot, true_residual
+  public :: round_off_residual, dot, true_residual
+
+  !> Largest round-off of the product of matrix and solution, over the right-hand side, that is
+  !> taken for that of a slender sheet and not of a singular matrix.
+  real(wp), parameter :: largest_round_off = 1.0e-3_wp
 
 contains
 
@@ -19,6 +23,20 @@ contains
     r = b - r
     length = sqrt(dot(r, r))
   end subroutine true_residual
+
+  !> Return the round-off of the product of matrix and solution, over the right-hand side: no solver
+  !> can bring the relative residual below it for certain. Where the sheet is slender and hardly
+  !> supported the solution is large, and this is far above the tolerance. It is zero where the
+  !> matrix counts as singular.
+  real(wp) function round_off_residual(matrix, b, x) result(round_off)
+    type(block_matrix_t), intent(in) :: matrix
+    !> Right-hand side and solution, `(3n)`.
+    real(wp), intent(in) :: b(:), x(:)
+
+    round_off = epsilon(1.0_wp)*maxval(abs(matrix%value)) &
+        *sqrt(dot(x, x))/max(sqrt(dot(b, b)), tiny(1.0_wp))
+    if (.not. round_off <= largest_round_off) round_off = 0.0_wp
+  end function round_off_residual
 
   !> Return the dot product of two vectors of one size, as four partial sums in a fixed order.
   pure real(wp) function dot(a, b)

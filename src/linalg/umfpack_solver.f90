@@ -5,7 +5,7 @@ module dd3_linalg_umfpack_solver
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t, cause_singular
   use dd3_linalg_matrix, only : block_matrix_t
-  use dd3_linalg_residual, only : true_residual
+  use dd3_linalg_residual, only : round_off_residual, true_residual
   use dd3_linalg_solver, only : linear_solver_t, solver_options_t, solver_report_t
   use dd3_linalg_umfpack, only : direct_factors_t
   implicit none
@@ -14,9 +14,6 @@ module dd3_linalg_umfpack_solver
 
   !> Relative residual accepted where the tolerance asks for less.
   real(wp), parameter :: residual_limit = 1.0e-6_wp
-  !> Largest round-off of the product of matrix and solution, over the right-hand side, that is
-  !> taken for that of a slender sheet and not of a singular matrix.
-  real(wp), parameter :: largest_round_off = 1.0e-3_wp
 
   !> Direct solver of the library UMFPACK.
   type, extends(linear_solver_t) :: umfpack_solver_t
@@ -73,8 +70,7 @@ contains
     call self%factors%factor(matrix, verdict)
   end subroutine umfpack_solver_factor
 
-  !> Solve and check the true residual. That of a slender free sheet cannot be smaller than the
-  !> round-off of the product of matrix and solution.
+  !> Solve and check the true residual.
   subroutine umfpack_solver_solve(self, matrix, b, x, report)
     class(umfpack_solver_t), intent(inout) :: self
     type(block_matrix_t), intent(in) :: matrix
@@ -82,7 +78,7 @@ contains
     real(wp), intent(inout) :: x(:)
     type(solver_report_t), intent(inout) :: report
 
-    real(wp) :: residual, round_off
+    real(wp) :: residual
     logical :: good
 
     report%method = "umfpack"
@@ -98,10 +94,8 @@ contains
         x = self%y
       end if
     end if
-    round_off = epsilon(1.0_wp)*maxval(abs(matrix%value))*norm2(self%y) &
-        /max(norm2(b), tiny(1.0_wp))
-    if (.not. round_off <= largest_round_off) round_off = 0.0_wp
-    report%converged = report%residual <= max(residual_limit, self%options%tolerance, round_off)
+    report%converged = report%residual <= max(residual_limit, self%options%tolerance, &
+        round_off_residual(matrix, b, self%y))
     if (report%converged) return
     report%cause = cause_singular
     report%reason = "the direct solution does not satisfy the system: nearly singular"
