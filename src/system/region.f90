@@ -9,8 +9,8 @@
 module dd3_system_region
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : this_rank
+  use dd3_linalg_auto_solver, only : make_auto_solver
   use dd3_linalg_solver, only : solver_options_t
-  use dd3_linalg_umfpack_solver, only : make_umfpack_solver
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_system_linear_problem, only : new_linear_problem
@@ -21,8 +21,8 @@ module dd3_system_region
 
 contains
 
-  !> Make the system of a region. Its solver is UMFPACK whatever the run has: it needs no set-up
-  !> that pays over many factorisations only, and solves on each rank alone.
+  !> Make the system of a region. Its solver is `auto` whatever the run has: it solves on each rank
+  !> alone.
   subroutine new_region(self, model, state, chosen)
     !> What the sheet lends is missing.
     type(system_t), intent(out) :: self
@@ -37,8 +37,8 @@ contains
     elements = pack([(e, e=1, model%n_element)], &
         [(any(chosen(model%connectivity(:, e))), e=1, model%n_element)])
     call new_stiffness_pattern(self%matrix, model, elements)
-    call make_umfpack_solver(self%solver, solver_options_t(method="umfpack", ilu_level=0, &
-        tolerance=1.0e-10_wp, iterations=1, ordering="none"))
+    call make_auto_solver(self%solver, solver_options_t(method="auto", ilu_level=0, &
+        tolerance=1.0e-10_wp, iterations=20, ordering="none"))
     call self%solver%setup(self%matrix, rows=pack([(i, i=1, model%n_node)], chosen))
     associate (place => model%part%place(elements))
       call set_elements(self, model, pack(place, place > 0))
