@@ -204,6 +204,24 @@ def test_named():
     assert "left out" not in call("dynain", "dynain", "y.out")
 
 
+def test_parts():
+    """Materials of two parts: one for both, which is told; one for each; refusals."""
+    text = whole_file()
+    nodes = "".join(f"{value:8d}" for value in SHELLS[9][0])
+    Path("dynain").write_text(text.replace(f"{9:8d}{1:8d}{nodes}", f"{9:8d}{4:8d}{nodes}"))
+    said = call("dynain", "dynain", "x.out", "--material", "dp600")
+    assert "parts and their materials: 1 dp600, 4 dp600; --material PART=NAME" in said
+    said = call("dynain", "dynain", "y.out", "--material", "dp600", "--material", "4=dc06")
+    assert "1 dp600, 4 dc06" in said and "PART" not in said
+    state = read_state(Path("y.out"))
+    assert state.materials == ["dp600", "dc06"] and state.material_of.tolist() == [0, 1]
+    assert "no shell is of part 3; parts of the file: 1, 4" in call("dynain", "dynain", "z.out", "--material", "3=a",
+                                                                    expect=2)
+    assert "expected NAME, or PART=NAME" in call("dynain", "dynain", "z.out", "--material", "a=b", expect=2)
+    Path("dynain").write_text(text)
+    assert "parts" not in call("dynain", "dynain", "w.out")
+
+
 def test_mutated_files():
     """Check that damaged files are taken or refused by a message."""
     from dd3.dynain import sheet_of
@@ -212,7 +230,7 @@ def test_mutated_files():
     for data in mutants(whole_file().encode(), 1000, 3):
         Path("damaged").write_bytes(data)
         try:
-            state, _ = sheet_of(Path("damaged"), "steel", 0, (1, 0, 0))
+            state, _ = sheet_of(Path("damaged"), ["steel"], 0, (1, 0, 0))
             assert all(np.isfinite(values).all() for values in (state.points, state.stress, state.strain, state.axes))
             taken += 1
         except Problem as problem:

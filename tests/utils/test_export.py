@@ -80,6 +80,22 @@ def test_shells(bar):
     assert len(cards("first.k", "INITIAL_STRESS_SHELL")) == 4
 
 
+def test_materials(program):
+    """Check that two materials are parts and element sets, and that a back-stress is named as left out."""
+    region = "*REGION half\n  points = 2 0  2 2\n  side = right\n  material = other\n"
+    other = ("*MATERIAL other\n  young = 2e5\n  poisson = 0.3\n  yield = von_mises\n  hardening = perfect Y0=250\n"
+             "  backstress = prager k=900\n")
+    Path("two.dat").write_text(DECK + region + other)
+    subprocess.run([program, "--quiet", "two.dat"], check=True, capture_output=True)
+    said = call("export", "two.out", "two.k")
+    assert "parts: 1 m, 2 other" in said and "left out: back-stresses" in said
+    assert [int(line[8:16]) for line in cards("two.k", "ELEMENT_SOLID")] == [1, 2]
+    call("export", "two.out", "shells.k", "--shells")
+    assert [int(line[8:16]) for line in cards("shells.k", "ELEMENT_SHELL_THICKNESS")[::2]] == [1, 2]
+    call("export", "two.out", "two.inp")
+    assert read_inp(Path("two.inp"), None).element_sets == {"m": {1}, "other": {2}}
+
+
 def test_refusals(program):
     """Check requests that cannot be met."""
     Path("two.dat").write_text(DECK.replace("divisions = 2 1 1", "divisions = 2 1 2").replace("solid_shell", "hex8"))

@@ -4,6 +4,7 @@
     dd3 dynain dynain op10.out
     dd3 dynain dynain op10.out --material dp600 --points 9 --rolling 0 1 0
     dd3 dynain dynain op10.out --units "mm GPa"
+    dd3 dynain dynain op10.out --material 1=dp600 --material 2=dc06     each part its own
 
 Shells of four nodes become elements solid_shell around their mid-surface; those that are numbered the other way round
 than the others are turned over. A node of one shell on the edge of another must be bound in its middle by
@@ -43,6 +44,7 @@ MOST_POINTS = 15  # through the thickness
 SAME = 1e-6  # difference of heights that are one
 NARROW, WIDE = (16,) * 5, (20,) * 5  # columns of a row with LARGE = 1; some writers use 16
 HISTORY = "history variables of LS-DYNA's material are not taken over"
+DEFAULT_MATERIAL = "steel"
 ODD_STRESS = 5.0, 1e4  # largest stress, MPa, outside of which another unit is likely
 
 
@@ -181,9 +183,38 @@ def check_units(path: Path, units: str | None, largest: float) -> None:
                       'are in: "mm MPa", "mm GPa" or "m Pa"')
 
 
-def sheet_of(path: Path, material: str, column: int, rolling: Sequence[float], units: str | None = None
+def materials_of(cells: list[Cell], words: Sequence[str]) -> tuple[list[str], np.ndarray, list[str]]:
+    """Return names of materials, the number of that of each shell, from 0 on, and what is to be said.
+
+    words: a name for all parts, or PART=NAME for some of them.
+    """
+    others, by_part = DEFAULT_MATERIAL, {}
+    for word in words:
+        number, equals, name = word.rpartition("=")
+        if equals and not number.isdigit():
+            raise Problem(f"--material {word}: expected NAME, or PART=NAME with the number of a part")
+        if equals:
+            by_part[int(number)] = name
+        else:
+            others = name
+    parts = sorted({cell.part for cell in cells})
+    if unknown := sorted(set(by_part) - set(parts)):
+        raise Problem(f"--material: no shell is of part {unknown[0]}; parts of the file: {', '.join(map(str, parts))}")
+    chosen = [by_part.get(part, others) for part in parts]
+    names = list(dict.fromkeys(chosen))
+    number_of = {part: names.index(name) for part, name in zip(parts, chosen)}
+    said = []
+    if len(parts) > 1:
+        listed = ", ".join(f"{part} {name}" for part, name in zip(parts, chosen))
+        said.append(f"parts and their materials: {listed}"
+                    + "; --material PART=NAME gives a part its own" * (len(by_part) == 0))
+    return names, np.array([number_of[cell.part] for cell in cells]), said
+
+
+def sheet_of(path: Path, material: Sequence[str], column: int, rolling: Sequence[float], units: str | None = None
              ) -> tuple[SheetState, list[str]]:
-    """Return the sheet of a dynain file, and what is to be said of it: turned shells, what is left out."""
+    """Return the sheet of a dynain file, and what is to be said of it: materials of several parts, turned shells, what
+    is left out."""
     reader = Reader(path)
     mesh = DynaMesh(reader)
     said = []
@@ -192,6 +223,8 @@ def sheet_of(path: Path, material: str, column: int, rolling: Sequence[float], u
         raise Problem(f"{path}: no shells (*ELEMENT_SHELL_THICKNESS)")
     if other := [cell for cell in cells if len(cell.nodes) != 4]:
         raise Problem(f"{other[0].place}: error: {len(other)} shells with three nodes; expected four")
+    names, material_of, more = materials_of(cells, material)
+    said += more
     if len(cells) < len(mesh.cells):
         said.append(f"left out: {len(mesh.cells) - len(cells)} solids")
     stress = Stresses(mesh, reader.cards).rows
@@ -227,7 +260,7 @@ def sheet_of(path: Path, material: str, column: int, rolling: Sequence[float], u
     said += account_of(reader)
     nodes = np.array([(node, a, b) for (a, b), node in bound.items()], int).reshape(-1, 3)
     return SheetState(points, points, np.hstack((2 * quads, 2 * quads + 1)), float(at_corner.mean()), tensor,
-                      np.maximum(values[..., 6], 0.0), axes, [material], np.zeros(len(quads), int), levels,
+                      np.maximum(values[..., 6], 0.0), axes, names, material_of, levels,
                       node_sets(quads, len(points), bound), np.concatenate((2 * nodes, 2 * nodes + 1))), said
 
 
@@ -319,7 +352,9 @@ def main(words: Sequence[str] | None = None) -> None:
     parser = new_parser("dynain", __doc__)
     parser.add_argument("file", type=Path, metavar="FILE", help="dynain file")
     parser.add_argument("folder", type=Path, metavar="FOLDER", help="folder to write, for *START")
-    parser.add_argument("--material", default="steel", metavar="NAME", help="its material in the input file (steel)")
+    parser.add_argument("--material", action="append", default=[], metavar="NAME",
+                        help=f"material in the input file ({DEFAULT_MATERIAL}), of all parts; PART=NAME that of one; "
+                             "repeatable")
     parser.add_argument("--points", type=int, default=0, metavar="N",
                         help="points through the thickness (as many as in the file)")
     parser.add_argument("--rolling", type=float, nargs=3, default=[1.0, 0.0, 0.0], metavar=("X", "Y", "Z"),

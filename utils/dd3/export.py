@@ -8,10 +8,12 @@
 
 Lengths are in mm, stresses in MPa. At the end of a run of elements solid_shell the shells have the stresses and strains
 of all points through the thickness, each the mean over its height; otherwise those in the middle of the elements, and
-bending moments are lost.
+bending moments are lost. Of a sheet of several materials each is a part, in .inp an element set. Back-stresses and
+limits that the run follows are left out, and named.
 """
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
@@ -20,7 +22,8 @@ from dd3.bound import bound_nodes
 from dd3.command import new_parser
 from dd3.errors import LOG, Problem
 from dd3.fields import AT, LIMITED, Fields
-from dd3.mesh import read_run, write_inp
+from dd3.mesh import material_numbers, read_run, write_inp
+from dd3.run import read_job
 from dd3.sheet_state import COLUMNS, SheetState, read_state
 
 MOST = 99_999_999  # a label in 8 columns
@@ -28,6 +31,7 @@ MOST = 99_999_999  # a label in 8 columns
 FACES = (((0, 3, 7, 4), (1, 2, 6, 5)), ((0, 1, 5, 4), (3, 2, 6, 7)), ((0, 1, 2, 3), (4, 5, 6, 7)))
 LONGER = 1.5  # edges through the thickness over the shortest ones, below this
 HEXAHEDRON = 12  # type of VTK
+OWN_BACK_STRESS = ("teodosiu_hu", "yoshida_uemori")  # hardening laws
 
 
 def to_inp(fields: Fields, step: int, target: Path, _: bool) -> None:
@@ -46,6 +50,7 @@ def to_dyna(fields: Fields, step: int, target: Path, shells: bool) -> None:
         raise Problem(f"{fields.path}: expected hexahedra of 8 nodes; write .inp or .vtu")
     cells = fields.cells(step).nodes.reshape(-1, 8)
     points = fields.points(step)
+    part = material_numbers(fields, step)
     stress = fields.values(step, "stress", at_cells=True)[0]
     plastic = fields.values(step, "equivalent_plastic_strain", at_cells=True)[0]
     if shells:
@@ -53,22 +58,34 @@ def to_dyna(fields: Fields, step: int, target: Path, shells: bool) -> None:
         rows = np.concatenate((np.zeros((len(cells), 1)), stress, plastic.reshape(-1, 1)), axis=1)[:, None]
         if step == fields.last and (state := state_at_end(fields, points)):
             rows = layer_rows(state)
-        lines = shell_lines(fields.path, points, cells, thickness, rows)
+        lines = shell_lines(fields.path, points, cells, part, thickness, rows)
         lines += shell_bounds(fields.path, points, cells)
     else:
         lines = [*node_lines(points), "*ELEMENT_SOLID",
-                 *("".join(f"{value:8d}" for value in (i, 1, *(cell + 1))) for i, cell in enumerate(cells, 1)),
+                 *("".join(f"{value:8d}" for value in (i, number, *(cell + 1)))
+                   for i, (number, cell) in enumerate(zip(part, cells), 1)),
                  "*INITIAL_STRESS_SOLID"]
         for i, (tensor, strain) in enumerate(zip(stress, plastic), 1):
             lines += [f"{i:10d}{1:10d}", row((*tensor, strain))]
         lines += solid_bounds(points, cells)
     if max(len(cells), len(points)) > MOST:
         raise Problem(f"{fields.path}: more than {MOST} nodes or elements")
-    if left_out := [name for name in LIMITED if name in fields.grid["CellData"]]:
+    job = read_job(fields.path.parent)
+    if (part > 1).any():
+        LOG.info("parts: " + ", ".join(f"{k} {job['materials'][k - 1]['name']}" for k in np.unique(part)))
+    left_out = [name for name in LIMITED if name in fields.grid["CellData"]]
+    if any(has_back_stress(material) for material in job["materials"]):
+        left_out.append("back-stresses")
+    if left_out:
         LOG.info(f"left out: {', '.join(left_out)}: LS-DYNA has them in history variables, whose places depend on its "
-                 "material; .vtu holds them")
+                 "material" + "; .vtu holds them" * ("back-stresses" not in left_out))
     title = f"{fields.state(step)} of {fields.path.parent.name}"
     target.write_text("\n".join(["*KEYWORD", "*TITLE", title[:80], *lines, "*END", ""]), encoding="utf-8")
+
+
+def has_back_stress(material: dict[str, Any]) -> bool:
+    """Whether a material of run.json hardens kinematically."""
+    return bool(material["backstress"]) or material["hardening"]["name"] in OWN_BACK_STRESS
 
 
 def solid_bounds(points: np.ndarray, cells: np.ndarray) -> list[str]:
@@ -129,17 +146,17 @@ def layer_rows(state: SheetState) -> np.ndarray:
     return np.stack((heights, *parts, strain), axis=-1)
 
 
-def shell_lines(path: Path, points: np.ndarray, cells: np.ndarray, thickness: np.ndarray, rows: np.ndarray
-                ) -> list[str]:
-    """Return the mid-surface of a sheet of one layer, its thickness given at the nodes: nodes, shells with their
-    thicknesses, and rows (m, heights, 8) of height, stresses and plastic strain."""
+def shell_lines(path: Path, points: np.ndarray, cells: np.ndarray, part: np.ndarray, thickness: np.ndarray,
+                rows: np.ndarray) -> list[str]:
+    """Return the mid-surface of a sheet of one layer, its thickness given at the nodes: nodes, shells with their parts
+    and thicknesses, and rows (m, heights, 8) of height, stresses and plastic strain."""
     lower, upper = sides(path, points, cells)
     ends = np.unique(np.stack([lower.ravel(), upper.ravel()], axis=1), axis=0)
     number = shell_numbers(lower, upper, len(points))
     thickness = thickness[ends].mean(axis=1)
     lines = [*node_lines(points[ends].mean(axis=1)), "*ELEMENT_SHELL_THICKNESS"]
     for i, corners in enumerate(number[lower], 1):
-        lines += ["".join(f"{value:8d}" for value in (i, 1, *corners)),
+        lines += ["".join(f"{value:8d}" for value in (i, part[i - 1], *corners)),
                   "".join(f"{thickness[corner - 1]:16.9e}" for corner in corners)]
     lines.append("*INITIAL_STRESS_SHELL")
     for i, layers in enumerate(rows, 1):

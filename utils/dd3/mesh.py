@@ -30,6 +30,7 @@ from dd3.hanging import TOLERANCE, hanging, outer_faces
 from dd3.inp.blocks import refuse
 from dd3.inp.model import Model, set_members
 from dd3.inp.scope import Element, Scope
+from dd3.run import read_job
 
 # Natural coordinates of the nodes in the order of Abaqus: corners, edges, centre, faces.
 NATURAL = [(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1), (-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1),
@@ -109,7 +110,19 @@ def read_run(path: Path, step: int = 0) -> Mesh:
             mesh.elements[i + 1][20:] = [face[k] for k in (6, 4, 5, 2, 1, 3, 0)]
     if kind == 12:
         mesh.bound = [(node + 1, a + 1, b + 1) for (a, b), node in bound_nodes(cells.reshape(-1, 8), points).items()]
+    number = material_numbers(fields, step)
+    if (number > 1).any():
+        materials = read_job(fields.path.parent)["materials"]
+        mesh.element_sets = {materials[k - 1]["name"]: (np.flatnonzero(number == k) + 1).tolist()
+                             for k in np.unique(number)}
     return mesh
+
+
+def material_numbers(fields: Fields, step: int) -> np.ndarray:
+    """Return the number of the material of each element (m,), from 1 on in the order of run.json."""
+    if "material" not in fields.grid["CellData"]:
+        return np.ones(len(fields.cells(step).types), int)
+    return np.rint(fields.values(step, "material", at_cells=True)[0]).astype(int)
 
 
 def read_inp(path: Path, wanted: str | None) -> Mesh:
