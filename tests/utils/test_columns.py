@@ -9,7 +9,7 @@ from helpers import call
 from mutations import mutants
 
 from dd3.errors import Problem
-from dd3.forming_limit import read_curve as read_limit
+from dd3.forming_limit_curve import read_curve as read_limit
 from dd3.identify.measurements import check_law, read_curve, read_data
 
 CURVE = [(0.004, 178.47), (0.01, 207.87), (0.02, 237.52), (0.04, 273.83), (0.06, 298.32)]

@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from dd3 import forming_limit, marciniak_kuczynski, places
 from dd3.errors import Problem
 from dd3.flc import calibrated
-from dd3.forming_limit import read_curve
+from dd3.forming_limit_curve import read_curve
 from dd3.laws import Material
 from dd3.marciniak_kuczynski import RATIO, Groove, Path, Sheet, ratios_of
 

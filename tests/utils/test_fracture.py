@@ -12,7 +12,7 @@ from helpers import ROOT, call
 from scipy.optimize import least_squares
 
 import dd3
-from dd3 import forming_limit
+from dd3 import forming_limit, forming_limit_diagram
 from dd3.fields import LIMITED
 from dd3.identify.fracture import stress_of
 from dd3.plot import scale
@@ -135,7 +135,7 @@ def test_shown(bar):
     assert "12 of 12 nodes, 2 of 2 elements fractured (fracture_damage); largest mean of an element 1.04 in " in said
     assert "2 of 2 elements beyond the limit of bent paths" in said and "; elements " in said
     assert "0 of 2 elements fractured" in call("fld", "bar.out", "--at", "pull:0")
-    drawn, _ = forming_limit.figure("bar.out")
+    drawn, _ = forming_limit_diagram.figure("bar.out")
     labels = [text.get_text() for text in drawn.axes[0].get_legend().get_texts()]
     assert {"fractured", "beyond the limit of bent paths"} <= set(labels)
     said = call("report", "bar.out", "--verdict", expect=1)

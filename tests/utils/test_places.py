@@ -35,6 +35,18 @@ def test_history_needs_numpy_and_pandas_alone(tmp_path):
     assert dd3.open(tmp_path).job["outcome"]["state"] == "killed"
 
 
+@pytest.mark.skipif(places.nearest(places.LIBRARY) is None, reason="libdd3laws.so is not built")
+def test_laws_need_no_pictures():
+    """Check that curves, forming limits and draw-beads of a material are computed without matplotlib."""
+    code = """import dd3
+from dd3 import forming_limit
+from dd3.tools.beads import through
+steel = dd3.material("dc06")
+print(steel.flc(0.8).limit(0.0) > 0.2, len(steel.curve(0.3)), through(None, 1.0, 0.1).restraint > 50)"""
+    done = run_hidden(("matplotlib", "pyvista", "vtk", "vtkmodules"), code)
+    assert done.stdout == "True 101 True\n", done
+
+
 def test_commands_without_locks():
     code = "import dd3.report, dd3.process, dd3.study.vary, dd3.tool; print('imported')"
     done = run_hidden(OF_POSIX, code)

@@ -13,7 +13,7 @@ import pytest
 from helpers import call, write_run
 
 from dd3.errors import Problem
-from dd3.forming_limit import ZONES, Curve, keeler_brazier, read_curve
+from dd3.forming_limit_curve import ZONES, Curve, keeler_brazier, read_curve
 from dd3.report.course import action
 from dd3.sheet import Sheet
 from dd3.springback import find, opening, rotation, twist

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dd3.forming_limit import Criteria, figure
+from dd3.forming_limit import Criteria
+from dd3.forming_limit_diagram import figure
 from dd3.sheet import Sheet
 
 DECK = """*BLANK strip

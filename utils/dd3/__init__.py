@@ -46,5 +46,5 @@ def material(source: str | Path | Mapping[str, Any] | None = None, *, name: str 
     name: that of the block, where a file has several. Raises Problem with the messages of the program on wrong values,
     and where the library of the laws, libdd3laws.so, is not installed.
     """
-    from dd3 import laws  # scipy and matplotlib, which runs do not need
+    from dd3 import laws  # scipy, which runs do not need
     return laws.material(source, name=name, **keys)

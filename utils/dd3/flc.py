@@ -27,7 +27,7 @@ from scipy.optimize import brentq
 from dd3.account import Account
 from dd3.command import new_parser
 from dd3.errors import Problem
-from dd3.forming_limit import Curve, read_points
+from dd3.forming_limit_curve import Curve, read_points
 from dd3.laws import Material
 from dd3.marciniak_kuczynski import LARGEST, LEFT, POINTS, RATIO, RIGHT, STRAIN_RATE, Limit, Sheet, curve_of, ratios_of
 from dd3.marciniak_kuczynski import Path as StrainPath

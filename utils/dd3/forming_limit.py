@@ -1,136 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draw the forming limit diagram of a run.
-
-    dd3 fld cup.out --curve dc06.csv
-    dd3 fld cup.out --low-carbon-steel --thinning 0.2 --margin 0.08 --surface upper --output fld.png
-
-Nodes and elements are judged by the forming limit curve of the material: that of --curve, a table with minor and major
-logarithmic strain (its form is that of `dd3 identify --help`), or that of forming_limit in *MATERIAL. For low-carbon
-steel, by --low-carbon-steel, --n, or grade = low_carbon_steel in *MATERIAL, it is estimated from the thickness and the
-exponent n of the hardening law or of --n (Keeler and Brazier 1977). --flc-from-material computes it with the laws of
-the run's own material (`dd3 flc`). Without a curve for the material there is no verdict.
-
-The thinning is judged beside the curve, by --thinning, thinning_limit in *MATERIAL, or 0.25, a convention. Elements
-beyond the limits that the run follows, the fields forming_limit_ratio and fracture_damage, are marked and listed.
-
-The estimate is the engineering strain (23.3 + 14.13 t) n/0.21 % at plane strain, t in mm, n at most 0.21. Its left
-branch is the line of constant thickness, major + minor = const; the slope of its right branch, 0.6, is a convention.
-"""
+"""Judge the strains of a run by the forming limit curve and the thinning limit of its material."""
 
 import argparse
-import math
-import re
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from dataclasses import fields as fields_of
-from itertools import cycle, pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from dd3.account import Account
-from dd3.columns import STRAIN, Column, read_columns
-from dd3.command import new_parser
 from dd3.errors import Problem
-from dd3.fields import AT, Fields
-from dd3.material_limits import mark, reached
-from dd3.plot.figures import new_figure, save
-from dd3.run import read_job
+from dd3.fields import Fields
+from dd3.forming_limit_curve import LOW_CARBON, ZONES, Curve, exponent_of, keeler_brazier, read_curve
 from dd3.sheet import Sheet
 from dd3.surface_strain import cell_strains
-from dd3.tables import read_text
 from dd3.verdict import THINNING
-
-ZONES = ("no strain", "thickening", "safe", "marginal", "critical")
-COLOURS = ("#d0d4d8", "#56b4e9", "#009e73", "#f0e442", "#d55e00")  # safe for the colour-blind
-LEAST_STRAIN = 0.01  # major strain below which a point is not judged
-RIGHT_SLOPE = 0.6
-LARGEST_N = 0.21  # of the correlation
-LARGEST = 2.0  # logarithmic strain; larger ones are in per cent
-LOW_CARBON = "low_carbon_steel"  # grade in *MATERIAL
-WITH_EXPONENT = ("swift", "swift_voce", "ludwik")  # hardening laws with an exponent n
-EXPECTED = "strains as fractions, not per cent, or with the unit % in the heading"
-
-
-class Curve:
-    """Limit of the major strain over the minor strain, linear between points; beyond them the end lines go on."""
-
-    def __init__(self, minor: Sequence[float] | np.ndarray, major: Sequence[float] | np.ndarray, label: str) -> None:
-        self.minor, self.major, self.label = np.asarray(minor, float), np.asarray(major, float), label
-
-    def limit(self, minor: Any) -> Any:
-        """Return the largest major strain."""
-        value = np.interp(minor, self.minor, self.major)
-        for end, inner, beyond in ((0, 1, np.minimum), (-1, -2, np.maximum)):
-            slope = (self.major[end] - self.major[inner]) / (self.minor[end] - self.minor[inner])
-            value = value + slope * beyond(minor - self.minor[end], 0.0)
-        return value
-
-    def zones(self, major: np.ndarray, minor: np.ndarray, margin: float) -> np.ndarray:
-        """Return the zone of each point, an index of ZONES.
-
-        Critical points are above the curve, marginal ones less than `margin` below it. Points with a major strain below
-        that of pure shear, -minor, thicken.
-        """
-        limit = self.limit(minor)
-        zone = np.full(np.shape(major), ZONES.index("safe"))
-        zone[major < -minor] = ZONES.index("thickening")
-        zone[np.maximum(np.abs(major), np.abs(minor)) < LEAST_STRAIN] = ZONES.index("no strain")
-        zone[major > limit - margin] = ZONES.index("marginal")
-        zone[major > limit] = ZONES.index("critical")
-        return zone
-
-
-def keeler_brazier(thickness: float, exponent: float) -> Curve:
-    """Return the curve of Keeler and Brazier for a thickness (mm) and a hardening exponent."""
-    plane = math.log(1 + (23.3 + 14.13 * thickness) / 100 * min(exponent, LARGEST_N) / LARGEST_N)
-    return Curve([-0.5 * plane, 0.0, 0.4], [1.5 * plane, plane, plane + RIGHT_SLOPE * 0.4],
-                 f"Keeler-Brazier, t = {thickness:.3g} mm, n = {exponent:.3g}")
-
-
-def read_rows(path: str | Path, engineering: bool = False, account: Account | None = None) -> list[Any]:
-    """Return the rows of a table with minor and major strain, checked, the minor strain increasing."""
-    highest = math.expm1(LARGEST) if engineering else LARGEST
-    columns = [Column(f"{name} strain", re.compile(pattern, re.IGNORECASE), STRAIN, low, highest, EXPECTED, engineering)
-               for name, pattern, low in (
-                   ("minor", r"minor|\bmin\b|nebenform|(?:eps|ε|phi|φ|e)_?2", -0.99 if engineering else -LARGEST),
-                   ("major", r"major|\bmax\b|hauptform|(?:eps|ε|phi|φ|e)_?1", -LARGEST))]
-    rows = read_columns(path, columns, Account() if account is None else account)
-    for line, words, (minor, major) in rows:
-        if minor > major:
-            raise line.problem(words[0], f"the minor strain, {words[0][0]}, is above the major strain, {words[1][0]}",
-                               "the minor strain first, then the major strain, or a heading that names the columns")
-        if major <= 0:
-            raise line.problem(words[1], f"the major strain, {words[1][0]}, is not positive", "a limit of tension")
-    return sorted(rows, key=lambda row: row.values[0])
-
-
-def read_points(path: str | Path, engineering: bool = False, account: Account | None = None
-                ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the logarithmic minor and major strains of a table with measured limits."""
-    minor, major = np.array([row.values for row in read_rows(path, engineering, account)]).reshape(-1, 2).T
-    return (np.log1p(minor), np.log1p(major)) if engineering else (minor, major)
-
-
-def read_curve(path: str | Path, engineering: bool = False, account: Account | None = None) -> Curve:
-    """Read a curve, a table with minor and major strain. Its label is that of a first line `# curve: ...`, by default
-    the name of the file."""
-    rows = read_rows(path, engineering, account)
-    if len(rows) < 2:
-        raise Problem(f"{path}: expected at least 2 points of the forming limit curve, got {len(rows)}")
-    for before, row in pairwise(rows):
-        if row.values[0] == before.values[0]:
-            raise row.line.problem(row.words[0],
-                                   f"the minor strain {row.words[0][0]} is that of {before.line.where} too",
-                                   "one major strain for each minor strain")
-    minor, major = np.array([row.values for row in rows]).T
-    if engineering:
-        minor, major = np.log1p(minor), np.log1p(major)
-    label = re.match(r"#\s*curve:\s*(.*\S)", read_text(path))
-    return Curve(minor, major, label[1] if label else Path(path).stem)
 
 
 @dataclass
@@ -243,19 +128,6 @@ def curve_of(fields: Fields, material: dict[str, Any], entries: dict[str, str]) 
     return keeler_brazier(thickness_of(fields), exponent)
 
 
-def exponent_of(material: dict[str, Any]) -> float | None:
-    """Return the exponent n of the hardening law swift, swift_voce or ludwik of a material; None with another law."""
-    law = material["hardening"]
-    found = (parameter["value"] for parameter in law["parameters"] if parameter["name"] == "n")
-    return next(found, None) if law["name"] in WITH_EXPONENT else None
-
-
-def exponent_in(law: str) -> float | None:
-    """Return the exponent n of a hardening law as the input writes it, None with a law without."""
-    found = re.search(r"\sn\s*=\s*([^\s]+)", law)
-    return float(found[1].lower().replace("d", "e")) if found and law.split()[0].lower() in WITH_EXPONENT else None
-
-
 def thickness_of(fields: Fields) -> float:
     """Return the median of the initial thickness, mm."""
     thickness = fields.values(0, "thickness")[0]
@@ -334,37 +206,6 @@ def judge(strains: Strains, limits: Limits, margin: float) -> Judged:
     return Judged(zone, [verdict, thinned(strains, cells, limits)])
 
 
-def draw(axes: Axes, strains: Strains, limits: Limits, margin: float, zone: np.ndarray | None) -> None:
-    """Draw the diagram, with the zone of each node and element."""
-    major, minor, cells = strains.joined()
-    if zone is None:
-        axes.plot(strains.minor, strains.major, ".", color="0.4")
-        axes.plot(cells.minor, cells.major, "x", color="0.6", markersize=3)
-    else:
-        draw_zones(axes, limits.curves(), zone, major, minor, len(strains.major), margin)
-    low, high = axes.get_xlim()
-    axes.plot([low, 0, high], [-low, 0, high], color="0.6", linewidth=0.8)
-    axes.set(xlim=(low, high), ylim=(min(0, major.min()), None), xlabel="minor strain (logarithmic)",
-             ylabel="major strain (logarithmic)")
-    axes.grid(True, color="0.9")
-
-
-def draw_zones(axes: Axes, curves: Sequence[Curve], zone: np.ndarray, major: np.ndarray, minor: np.ndarray, count: int,
-               margin: float) -> None:
-    """Draw the points in the colours of their zones, the first `count` as nodes, and the curves."""
-    for number, name in enumerate(ZONES):
-        here = np.flatnonzero(zone == number)
-        nodes, elements = here[here < count], here[here >= count]
-        if len(here):
-            axes.plot(minor[nodes], major[nodes], ".", color=COLOURS[number], label=name)
-            axes.plot(minor[elements], major[elements], "x", color=COLOURS[number], markersize=3)
-    at = np.linspace(min(-0.3, minor.min()), max(0.3, minor.max()), 200)
-    for curve, style in zip(curves, cycle(("-", "-.", ":"))):
-        axes.plot(at, curve.limit(at), f"k{style}", linewidth=1.5, label=curve.label)
-        axes.plot(at, curve.limit(at) - margin, "k--", linewidth=0.8, label="marginal" if curve is curves[0] else None)
-    axes.legend(frameon=False, fontsize=9)
-
-
 def by_curve(curve: Curve, zone: np.ndarray, major: np.ndarray, minor: np.ndarray, count: int) -> str:
     """Return the verdict by the curve on nodes, the first `count`, and elements."""
     critical = zone == ZONES.index("critical")
@@ -400,39 +241,3 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def take_criteria(options: dict[str, Any]) -> Criteria:
     """Remove the options of the limits from parsed ones; return them."""
     return Criteria(**{entry.name: options.pop(entry.name) for entry in fields_of(Criteria)})
-
-
-def figure(run: str | Path, at: str | float | None = None, surface: str = "middle", criteria: Criteria | None = None,
-           account: Account | None = None) -> tuple[Figure, Judged]:
-    """Return the forming limit diagram of a run at a step, and what it says.
-
-    at: travel in mm, or a phase (the last step). surface: middle, upper or lower.
-    """
-    sheet, criteria = Sheet(run), criteria or Criteria()
-    step = sheet.last if at is None else sheet.step_at(str(at))
-    limits = find_limits(sheet, read_job(sheet.folder), criteria, account)
-    strains = strains_of(sheet, step, surface)
-    found = judge(strains, limits, criteria.margin)
-    drawn, axes = new_figure((8, 5.2))
-    draw(axes, strains, limits, criteria.margin, found.zone)
-    for limit in reached(sheet, step):
-        mark(axes, strains, limit)
-        found.said.append(limit.said())
-    axes.set_title(sheet.state(step), fontsize=10)
-    return drawn, found
-
-
-def main(words: Sequence[str] | None = None) -> None:
-    """Draw the diagram of the command line."""
-    parser = new_parser("fld", __doc__)
-    parser.add_argument("run", metavar="RUN", help="folder of results")
-    parser.add_argument("--at", metavar="PLACE", help=AT)
-    parser.add_argument("--surface", choices=["middle", "upper", "lower"], default="middle",
-                        help="where the strains are taken (middle)")
-    add_options(parser)
-    parser.add_argument("--output", default="fld.png", help="picture to write: .png, .svg or .pdf (fld.png)")
-    options = vars(parser.parse_args(words))
-    output, account = options.pop("output"), Account()
-    drawn, found = figure(criteria=take_criteria(options), account=account, **options)
-    save(drawn, output, 130)
-    print(output, *found.said, *(f"left out: {item}" for item in account.left_out()), sep="\n")

@@ -20,7 +20,7 @@ from scipy.optimize import brentq
 from dd3 import places
 from dd3.deck import text_of
 from dd3.errors import Problem
-from dd3.forming_limit import LOW_CARBON, Curve, exponent_in, keeler_brazier
+from dd3.forming_limit_curve import LOW_CARBON, Curve, exponent_in, keeler_brazier
 from dd3.tools.blocks import Block, blocks_of, lines_of, lines_of_text
 from dd3.tools.set_material import found
 

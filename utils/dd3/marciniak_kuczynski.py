@@ -29,7 +29,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dd3.errors import Problem
-from dd3.forming_limit import Curve
+from dd3.forming_limit_curve import Curve
 from dd3.laws import Material
 
 RATIO = 10.0  # of the thickness strain increments of groove and sheet at the limit

@@ -6,11 +6,12 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from dd3.fields import LIMITED, Fields
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
     from dd3.forming_limit import Strains
 
 # Of each field its title, what elements above 1 are, their mark in the forming limit diagram, and whether the nodes
@@ -60,7 +61,7 @@ def reached(fields: Fields, step: int) -> Iterator[Reached]:
             yield Reached(name, values[0], middles, values[1])
 
 
-def mark(axes: Axes, strains: "Strains", limit: Reached) -> None:
+def mark(axes: "Axes", strains: "Strains", limit: Reached) -> None:
     """Mark the elements that are beyond a limit in a forming limit diagram."""
     beyond, cells = limit.beyond, strains.at_cells
     if len(beyond) and cells:

@@ -82,7 +82,8 @@ class Run:
         limit: the forming limit diagram; at, surface (middle, upper, lower), and those of `judge`.
         """
         if kind == "limit":
-            from dd3.forming_limit import Criteria, figure
+            from dd3.forming_limit import Criteria
+            from dd3.forming_limit_diagram import figure
             own = {name: options.pop(name) for name in ("at", "surface") if name in options}
             return figure(self.folder, criteria=Criteria(**options), **own)[0]
         if kind == "levels":

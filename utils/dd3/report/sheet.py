@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 from matplotlib.patches import Patch
 
-from dd3 import computed, forming_limit, material_limits, measured, springback, verdict
+from dd3 import computed, forming_limit, forming_limit_diagram, material_limits, measured, springback, verdict
 from dd3.account import Account
+from dd3.forming_limit_curve import COLOURS, ZONES
 from dd3.plot import sheet as pictures
 from dd3.plot import skins
 from dd3.plot.figures import new_figure
@@ -45,7 +46,7 @@ def add_limit_diagram(report: Report) -> None:
     strains = forming_limit.strains_of(report.sheet, report.last, "middle")
     found = forming_limit.judge(strains, limits, report.criteria.margin)
     zone, report.limits = found
-    forming_limit.draw(axes, strains, limits, report.criteria.margin, zone)
+    forming_limit_diagram.draw(axes, strains, limits, report.criteria.margin, zone)
     for limit in material_limits.reached(report.sheet, report.last):
         material_limits.mark(axes, strains, limit)
         report.limits.append(limit.said())
@@ -63,7 +64,7 @@ def add_limit_diagram(report: Report) -> None:
 def zone_map(report: Report, zone: np.ndarray) -> str:
     """Draw the zones on the sheet and return the element."""
     keys = " ".join(f'<span class="key" style="background:{colour}"></span>{name}&emsp;'
-                    for name, colour in zip(forming_limit.ZONES, forming_limit.COLOURS, strict=True))
+                    for name, colour in zip(ZONES, COLOURS, strict=True))
     return report.drawn(lambda: draw_zones(report, zone), "zones",
                         "zones of the forming limit diagram on the sheet") + f"<p>{keys}</p>"
 
@@ -78,7 +79,7 @@ def draw_zones(report: Report, zone: np.ndarray) -> None:
     mesh.cell_data["zone"] = np.array([max(zone[mesh.get_cell(i).point_ids].max(), zone[mesh.n_points + i])
                                        for i in range(mesh.n_cells)])
     pictures.add_surface(plotter, skins.sheet_skin(mesh, style.mirror), scalars="zone",
-                         cmap=list(forming_limit.COLOURS), clim=[-0.5, len(forming_limit.ZONES) - 0.5])
+                         cmap=list(COLOURS), clim=[-0.5, len(ZONES) - 0.5])
     pictures.aim(plotter, pictures.box_of(report.run, [report.last], style.mirror, {}), style)
     plotter.screenshot(report.picture("zones"))
     plotter.close()

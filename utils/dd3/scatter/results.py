@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 
 from dd3 import forming_limit, springback
 from dd3.errors import Problem
+from dd3.forming_limit_curve import ZONES
 from dd3.nominal import at_places
 from dd3.run import read_job
 from dd3.scatter.statistics import Bands
@@ -69,7 +70,7 @@ def over_limit(run: Path) -> float:
     major, minor, _ = strains.joined()
     largest = 0.0
     for number, curve in limits.by_material.items() or {0: limits.curves()[0]}.items():
-        judged = curve.zones(major, minor, criteria.margin) > forming_limit.ZONES.index("thickening")
+        judged = curve.zones(major, minor, criteria.margin) > ZONES.index("thickening")
         if number:
             judged &= strains.of_material(number)
         largest = float((major[judged] / curve.limit(minor[judged])).max(initial=largest))

@@ -8,16 +8,14 @@ and uplift are those of the path of the sheet through them (bead_path.py).
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.spatial import cKDTree
 
+from dd3.bead_path import CLEARANCE, GAP, Bead, Result, flow
+from dd3.laws import Material
 from dd3.tools.set_blank import Blank, needed
 from dd3.tools.set_material import STEEL, STEPS, STRAIN
-
-if TYPE_CHECKING:
-    from dd3.bead_path import Result
 
 # Radius and height of a bead, radius of the edges of its groove, distance of its middle from the rim of what is covered
 # at the end of the draw, and margin of the blank beyond that rim, with which the sheet does not leave the bead, over
@@ -150,10 +148,8 @@ def stretches(chosen: np.ndarray) -> list[np.ndarray]:
     return [part for part in np.split(order, ends) if chosen[part[0]]]
 
 
-def through(path: Path | None, thickness: float, friction: float) -> "Result":
+def through(path: Path | None, thickness: float, friction: float) -> Result:
     """Return what the beads do to a sheet, mm, of the material of a file, or the one that is assumed."""
-    from dd3.bead_path import CLEARANCE, GAP, Bead, flow  # late, as the laws import matplotlib
-    from dd3.laws import Material
     material, radius = Material(file=path) if path else Material(STEEL), RADIUS * thickness
     return flow(material, Bead(thickness, radius, SHOULDER * thickness, CLEARANCE * thickness, radius, GAP * thickness,
                                friction))

@@ -12,6 +12,7 @@ import matplotlib
 import numpy as np
 
 from dd3 import forming_limit, springback, verdict
+from dd3 import forming_limit_curve as curves
 from dd3.fields import COMPONENTS, text_of
 from dd3.plot import scale, skins
 from dd3.plot import sheet as pictures
@@ -177,7 +178,7 @@ class Scene:
                 curve, margin = self.limits.curve, self.margin
                 zones = [None if part is None else curve.zones(part.major, part.minor, margin) for part in parts]
                 yield {"name": "limit_zone", "label": "zone of the forming limit diagram", "help": "", "role": "zone",
-                       "elements": at_cells, **named(forming_limit.ZONES, forming_limit.COLOURS),
+                       "elements": at_cells, **named(curves.ZONES, curves.COLOURS),
                        **self.written(zones, True)}
             yield {"name": "thinning_zone", "label": "zones of thinning and wrinkling", "elements": at_cells,
                    "help": f"limit of thinning {100 * self.limits.thinning:g} %; it thickens where the major strain is "
@@ -199,7 +200,7 @@ class Scene:
     def zones(self, strains: forming_limit.Strains) -> np.ndarray:
         """Return the zones of thinning and thickening, numbers of ZONES."""
         zone = np.zeros(len(strains.major), int)
-        large = np.maximum(np.abs(strains.major), np.abs(strains.minor)) >= forming_limit.LEAST_STRAIN
+        large = np.maximum(np.abs(strains.major), np.abs(strains.minor)) >= curves.LEAST_STRAIN
         zone[large & (strains.major < -strains.minor)] = 1
         zone[strains.thinning > NEAR * self.limits.thinning] = 2
         zone[strains.thinning > self.limits.thinning] = 3
