@@ -133,6 +133,28 @@ def test_command(tmp_path, program):
     assert "at least 4" in call(*words, 6, "--layers", 2, expect=2)
 
 
+def test_deck(tmp_path):
+    """Check that material, thickness and friction are those of an input file, and that they may differ in it no more
+    than a bead allows."""
+    (tmp_path / "steel.dat").write_text(STEEL)
+    sheet = tmp_path / "deck.dat"
+    tools = "*TOOL die\n  friction = ${mu}\n*TOOL holder\n  friction = 0.1\n"
+    sheet.write_text("*PARAMETER\n  mu = 0.1\n  sheet = steel\n*INCLUDE ${sheet}.dat\n"
+                     + STEEL.replace("steel", "other")
+                     + "*BLANK blank\n  size = 100 100 0.8\n  material = ${sheet}\n" + tools)
+    words = "bead", sheet, "--radius", 4, "--height", 3, "--layers", 4, "--steps", 4
+    given = call("bead", tmp_path / "steel.dat", *words[2:], "--thickness", 0.8, "--friction", 0.1)
+    assert call(*words) == given and given.startswith("steel, 0.8 mm;")
+    assert "steel, 1 mm;" in call(*words, "--thickness", 1)
+    assert "other, 0.8 mm;" in call(*words, "--name", "other")
+    sheet.write_text(sheet.read_text() + "  friction_law = stribeck v0=1 r=0.5\n")
+    assert "friction_law is not followed" in call(*words)
+    sheet.write_text(sheet.read_text() + "*TOOL pad\n  friction = 0.05\n")
+    assert "0.05, 0.1; expected --friction" in call(*words, expect=2)
+    assert "friction 0.05" in call(*words, "--friction", 0.05)
+    assert "expected --thickness" in call("bead", tmp_path / "steel.dat", *words[2:], expect=2)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("text, height, friction", ((STEEL, 6.0, 0.0), (STEEL, 6.0, 0.1), (DP780, 4.0, 0.1)))
 def test_strip(tmp_path, program, text, height, friction):
