@@ -12,6 +12,7 @@ from scipy.optimize import brentq
 
 from dd3 import places
 from dd3.bead_path import Bead, Strip, flow
+from dd3.bead_span import Branch, Start, free_span
 from dd3.bead_strip import write_strip
 from dd3.bent_section import Section
 from dd3.errors import Problem
@@ -68,25 +69,57 @@ def test_pressure():
     tension = section.force - abs(section.moment * section.curvature)
     assert pressure == pytest.approx(tension / (1 / 0.15 - 0.5), rel=0.02)
     assert abs(section.radial[0]) < 0.05 * pressure
+    pressed = Section(Material(STEEL), 1.0, layers=32)
+    pressed.pull(100.0, 10)
+    pressed.bend(-0.15, 20, pressure=50.0, beyond=0.1)
+    tension = pressed.force - abs(pressed.moment * pressed.curvature) + 50 / 2  # less the mean stress across
+    pressure = tension / (1 / 0.15 - 0.5) + 50
+    assert -1.5 * pressed.radial[-1] + 0.5 * pressed.radial[-2] == pytest.approx(pressure, rel=0.01)
+    assert abs(pressed.radial[0]) < 0.05 * pressure and pressed.stretch > section.stretch
 
 
-def test_geometry():
-    """Check that the arcs touch the next tool, that tension straightens them, and that an elastic sheet passes free."""
-    bead = Bead(1.0, 5.0, 4.0, 1.5, 5.0, 0.1)
+def test_free_part():
+    """Check the slopes of an elastic free part under tension against their closed form: D e'' = M + m x + T e."""
+    stiffness, first, second, length, tension = 2e4, 20.0, -12.0, 12.0, 80.0
+    moments = np.linspace(60.0, -60.0, 13)
+    branch = Branch.of(moments / stiffness, moments, stiffness)
+    start = Start((0.0, 0.0), 0.0, first, first / stiffness, tension, 1)
+    span = free_span(start, (length, 0.0), -second / stiffness, branch, np.zeros(201), 2.0)
+    root, rise = math.sqrt(tension / stiffness), (second - first) / length
+    even = first / tension
+    odd = (second / tension - even * math.cosh(root * length)) / math.sinh(root * length)
+    slope = [even * root * math.sinh(root * x) + odd * root * math.cosh(root * x) - rise / tension for x in (0, length)]
+    assert span.slopes == pytest.approx(slope, rel=2e-4)
+    offset = even * math.cosh(root * (length - 2)) + odd * math.sinh(root * (length - 2)) - (
+        first + rise * (length - 2)) / tension
+    assert span.near == pytest.approx((first + rise * (length - 2) + tension * offset) / stiffness, rel=1e-3)
+
+
+@pytest.mark.parametrize("height", (1.0, 5.0, 10.0))
+def test_path(height):
+    """Check that the free parts are tangential to the tools and nowhere in them, and that a low bead does not bend the
+    sheet as much as its tools."""
+    bead = Bead(1.0, 5.0, 4.0, 1.5, height, 0.1, 0.1)
     strip = Strip(Material(STEEL), bead, 0.0, 16, 20)
-    entry, arc, leaving = strip.arcs()
-    middles = np.array([[-bead.half, -strip.edge], [0.0, strip.middle - bead.height], [bead.half, -strip.edge]])
-    turn = entry.slope - entry.angle
-    first = middles[0] + (strip.edge - entry.radius) * np.array([math.sin(turn), math.cos(turn)])
-    second = middles[1] + (arc.radius - strip.middle) * np.array([math.sin(entry.slope), math.cos(entry.slope)])
-    assert np.linalg.norm(middles[1] - first) == pytest.approx(entry.radius + strip.middle)
-    assert np.linalg.norm(middles[2] - second) == pytest.approx(arc.radius + strip.edge)
-    assert not entry.straight and leaving.radius == pytest.approx(4.5 + 0.1 / (1 - math.cos(arc.slope)))
-    strip.moments, strip.forces = [100.0] * 3, [1000.0] * 3
-    entry, arc, leaving = strip.arcs()
-    assert (entry.radius, arc.radius, leaving.radius) == pytest.approx((4.5, 5.5, 4.5))
-    across, apart = middles[1] - middles[0]
-    assert entry.slope == pytest.approx(math.atan2(across, apart) - math.acos(10 / math.hypot(across, apart)))
+    strip.flow()
+    path = strip.path(strip.unknowns)
+    assert np.abs(path.residual).max() < 1e-6
+    for i, span in enumerate(path.spans):
+        start = np.array(strip.place(i, path.leaving[i]))
+        end = np.array(strip.place(i + 1, path.coming[i + 1]) if i < 2 else (strip.unknowns[5], bead.gap))
+        chord = end - start
+        across = np.array([chord[1], -chord[0]]) / np.hypot(*chord)
+        places = start + np.linspace(0, 1, len(span.offsets))[:, None] * chord + span.offsets[:, None] * across
+        for k in range(3):
+            assert np.hypot(*(places - strip.centre(k)).T).min() > strip.radii[k] - 2e-3, (i, k)
+        assert places[:, 1].max() < bead.gap + 1e-3
+    assert all(0 < curvature * radius <= 1 for curvature, radius in zip(path.curvatures, strip.radii))
+    assert (path.curvatures[0] * strip.radii[0] < 0.1) == (height == 1.0)
+
+
+def test_elastic():
+    """Check that an elastic sheet passes free."""
+    bead = Bead(1.0, 5.0, 4.0, 1.5, 5.0, 0.1)
     hard = Material(STEEL.replace("swift K=565 e0=0.007117 n=0.259", "perfect Y0=1e6"))
     assert abs(flow(hard, bead).restraint) < 0.01 * flow(Material(STEEL), bead).restraint
 
@@ -133,6 +166,28 @@ def test_command(tmp_path, program):
     assert "at least 4" in call(*words, 6, "--layers", 2, expect=2)
 
 
+def test_deck(tmp_path):
+    """Check that material, thickness and friction are those of an input file, and that they may differ in it no more
+    than a bead allows."""
+    (tmp_path / "steel.dat").write_text(STEEL)
+    sheet = tmp_path / "deck.dat"
+    tools = "*TOOL die\n  friction = ${mu}\n*TOOL holder\n  friction = 0.1\n"
+    sheet.write_text("*PARAMETER\n  mu = 0.1\n  sheet = steel\n*INCLUDE ${sheet}.dat\n"
+                     + STEEL.replace("steel", "other")
+                     + "*BLANK blank\n  size = 100 100 0.8\n  material = ${sheet}\n" + tools)
+    words = "bead", sheet, "--radius", 4, "--height", 3, "--layers", 4, "--steps", 4
+    given = call("bead", tmp_path / "steel.dat", *words[2:], "--thickness", 0.8, "--friction", 0.1)
+    assert call(*words) == given and given.startswith("steel, 0.8 mm;")
+    assert "steel, 1 mm;" in call(*words, "--thickness", 1)
+    assert "other, 0.8 mm;" in call(*words, "--name", "other")
+    sheet.write_text(sheet.read_text() + "  friction_law = stribeck v0=1 r=0.5\n")
+    assert "friction_law is not followed" in call(*words)
+    sheet.write_text(sheet.read_text() + "*TOOL pad\n  friction = 0.05\n")
+    assert "0.05, 0.1; expected --friction" in call(*words, expect=2)
+    assert "friction 0.05" in call(*words, "--friction", 0.05)
+    assert "expected --thickness" in call("bead", tmp_path / "steel.dat", *words[2:], expect=2)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("text, height, friction", ((STEEL, 6.0, 0.0), (STEEL, 6.0, 0.1), (DP780, 4.0, 0.1)))
 def test_strip(tmp_path, program, text, height, friction):
@@ -152,4 +207,4 @@ def test_strip(tmp_path, program, text, height, friction):
     assert found.restraint == pytest.approx(grip, rel=0.04)
     assert found.bead == pytest.approx(press, rel=0.05)
     assert found.uplift == pytest.approx(press + before + behind, rel=0.07)
-    assert found.thinning == pytest.approx(thinning, rel=0.4)
+    assert found.thinning == pytest.approx(thinning, rel=0.15)

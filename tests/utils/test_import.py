@@ -246,6 +246,39 @@ def test_table_of_rates():
         assert any("lowest strain rate" in note for note in found.notes)
 
 
+def test_fracture(program):
+    """Check GISSMO of both keywords: a curve, a table over the Lode parameter, what is left out, what cannot be
+    taken; the program takes it."""
+    elastic = "*MAT_024", row(1, "7.8E-9", "2.1E5", 0.3, 200.0, 1000.0)
+    line = curve(71, (0.0, 0.7), (0.577, 0.5), (0.667, 0.9))
+    erosion = ["*MAT_ADD_EROSION", row(1, "", "", "", "", "", 3), row(""),
+               row(1, 1, 71, -72, 2.0, 0.3, 1.5, 73), row("", "", 2, 0, 1.0, 1.0)]
+    found, deck = imported(with_material(*elastic, *erosion, *line))
+    assert "  fracture = table exponent=2 &\n    0:0.7 0.577:0.5 0.667:0.9\n" in deck
+    left = "\n".join(map(str, found.left_out))
+    for name in ("NUMFIP = 3", "ECRIT = -72", "DCRIT = 0.3", "FADEXP = 1.5", "LCREGD = 73", "SHRF = 1"):
+        assert name in left, left
+    table = ["*DEFINE_TABLE_2D", row(70), row(-1.0, "", 74), row(1.0, "", 71), *line,
+             *curve(74, (-0.333, 1.4), (0.667, 0.9))]
+    gissmo = ["*MAT_ADD_DAMAGE_GISSMO", row(1, "", 1, 2.5, 1), row(70, -72, 1.0, "", 2.0), row("", 1.0)]
+    found, deck = imported(with_material(*elastic, *gissmo, *table))
+    assert "fracture = table lode1=-1 lode2=1 &\n    -0.333:1.4 0.667:0.9 &\n    -0.333:0.7 0:0.7 0.577:0.5" in deck
+    assert any("27 J3" in note for note in found.notes)
+    call("import", "deck.k")
+    done = subprocess.run([program, "--check", "deck/deck.dat"], capture_output=True, text=True, timeout=60,
+                          check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    for card, said in ((["*MAT_ADD_EROSION", row(1, "", "", "", 0.5)], "its criteria are not available"),
+                       ([*erosion[:3], row(-1, 1, 71)], "IDAM = -1"),
+                       ([*erosion[:3], row(1, 61, 71)], "history variable"),
+                       ([*erosion[:3], row(1, 1, 75)], "LCSDG = 75 is no curve"),
+                       ([*erosion[:3], row(1, 1, 71, "", 0.5)], "DMGEXP = 0.5"),
+                       (["*MAT_ADD_EROSION", row(2), *erosion[2:]], "nothing here uses its material")):
+        found, deck = imported(with_material(*elastic, *card, *line))
+        assert "fracture =" not in deck and any(said in str(item) for item in found.left_out), found.left_out
+    assert "expected > 0" in refused(with_material(*elastic, *erosion, *curve(71, (0.0, 0.7), (0.5, 0.0))))
+
+
 def test_further_cards():
     """Check tables, parts that follow another, draw-beads, and what is left out or refused for its axes or places."""
     text = with_material("*MAT_024", row(1, "7.8E-9", "2.1E5", 0.3), row("", "", 50), "*DEFINE_TABLE", row(50), row(0.1),

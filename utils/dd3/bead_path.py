@@ -1,22 +1,26 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The path of a sheet through a round draw-bead in a steady flow, and the forces of the bead.
 
-The sheet is bent at the entry shoulder, in reverse at the bead, and again at the exit shoulder. Once bent, it keeps its
-curvature until the moment is reversed, at the next contact, unless tension straightens it before. Its middle is a chain
-of arcs, each from a contact on, which end tangentially at the next tool, at most as curved as the tools. Its curvature
-at the contact is higher by M/D, M the moment there, D the elastic stiffness, as the moment is zero in its middle. It is
-straight where the moment is constant: an arc of the radius r that turns by more than a, r a^2 = 2 m/F with the sum m of
-the moments at its ends and the tension F, ends in a straight part. The force on a tool is the difference of the forces
-in the arcs before and behind it: the tension along the chord c, and m/c across.
+The sheet is bent at the entry shoulder, in reverse at the bead, again at the exit shoulder, and flattened at the plate
+behind it. Between the tools it is free (`bead_span`): the moment passes there from one sign to the other, and the sheet
+is bent in reverse before it reaches the next tool. At a tool it is as curved as the tool and follows it over an angle,
+or touches it at one place with a smaller curvature. The unknowns are that angle or curvature at each tool, the slopes
+at which the sheet comes to bead and exit shoulder, and the place where it touches the plate; the conditions are that
+each free part is tangential at both ends. They are solved for with the moments of a pass of a section along the path,
+which is repeated with the curvatures found until the force settles.
+
+The force on a tool is the difference of the forces before and behind it. It spreads at 45 degrees to the middle of the
+sheet, over a length of one thickness: as long as the sheet comes to the tool within half of this length, the force over
+the thickness presses on it, falling to nothing at the other face. The sheet stretches the more in the bend.
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
+from scipy.optimize import least_squares
 
+from dd3.bead_span import NODES, Branch, Span, Start, free_span
 from dd3.bent_section import Section, parts
 from dd3.errors import Problem
 from dd3.laws import Material
@@ -24,9 +28,15 @@ from dd3.laws import Material
 CLEARANCE, GAP = 1.2, 0.1  # over the thickness, of a bead for which they are not given
 LAYERS, STEPS = 16, 20  # through the thickness; to a bend
 PULLS = 4  # steps of the friction at a contact
-PASSES, SAME, ZERO = 20, 2e-3, 1e-4  # largest number of passes; change of the force at the last one, over the uplift
-WIDEST = 1e6  # radius of an arc, mm
-CONTACT, LEAST = 1e-9, 1e-9  # difference of radii that are one, mm; least moment, N
+PASSES, SAME, ZERO = 30, 2e-3, 5e-4  # largest number of passes; change of the forces at the last one, of it over uplift
+SIDES = 1, -1, 1  # of the tools: 1 below the sheet, -1 above
+START = -0.8, -0.7, -0.7, 0.0, -0.1, 6.0  # unknowns of a low bead: see Strip.unknowns; the last over the thickness
+LOWEST, WIDEST, FARTHEST = -0.995, 2.5, 80.0  # bounds of the unknowns; the last over the thickness
+SCALES = 0.1, 0.1, 0.1, 0.05, 0.05, 1.0
+FOUND = 1e-7  # largest residual of the path, radian
+EVALUATIONS, SHORTEST = 60, 0.05  # of the path; step of the height over the thickness
+NEAR, HALF = 0.5, 0.5  # thicknesses before a tool within which it presses; relaxation of the pressure
+LEAST = 1e-9  # moment, N
 
 
 @dataclass(frozen=True)
@@ -90,177 +100,190 @@ class Result:
 
 
 @dataclass(frozen=True)
-class Arc:
-    """An arc of the middle from a contact on: radius, mm, whether it ends in a straight part, slope at its end and
-    angle, radian."""
+class Path:
+    """A path of the sheet: curvatures at the three tools, 1/mm; slopes where it comes to them and leaves them, radian;
+    distance before the entry shoulder from which it is lifted, mm; free parts; residual, radian."""
 
-    radius: float
-    straight: bool
-    slope: float
-    angle: float
-
-
-def tangent(across: float, apart: float, radii: float) -> tuple[float, float]:
-    """Return the slope of the line that touches two circles from inside, radian, and the square of its length, by the
-    distances of their middles and the sum of the radii; where they overlap that of the line between."""
-    distance = math.hypot(across, apart)
-    return math.atan2(across, apart) - math.acos(min(1.0, radii / distance)), distance**2 - radii**2
-
-
-def arc_of(line: Callable[[float], tuple[float, float, float]], least: float, moments: float, force: float) -> Arc:
-    """Return an arc; line: by its radius slope at its end, angle, radian, and square of the length of the straight
-    part, mm2; least: radius of the tool. Without force it touches the next tool."""
-    widest = least
-    if line(least)[2] > 0:
-        above = 2 * least
-        while line(above)[2] > 0:
-            above *= 2
-            if above > WIDEST:
-                raise Problem("the sheet does not reach the next tool of the bead")
-        widest = float(brentq(lambda radius: line(radius)[2], least, above))
-
-    def excess(radius: float) -> float:
-        return radius * line(radius)[1]**2 - 2 * moments / force
-
-    radius, straight = widest, force > 0 and excess(widest) > 0
-    if straight:
-        radius = least if excess(least) >= 0 else float(brentq(excess, least, widest))
-    slope, angle, _ = line(radius)
-    return Arc(radius, straight, slope, angle)
+    curvatures: list[float]
+    coming: list[float]
+    leaving: list[float]
+    lifted: float
+    spans: list[Span]
+    residual: np.ndarray
 
 
 class Strip:
-    """The steady flow of a sheet through a bead: arcs and forces by those of a pass before."""
+    """The steady flow of a sheet through a bead; the path follows from the moments of a pass, and the reverse.
+
+    unknowns: of each of the three tools the curvature of the sheet over its own less 1, or the angle over which the
+    sheet follows it, radian; slopes where the sheet comes to bead and exit shoulder; place where it touches the plate.
+    """
 
     def __init__(self, material: Material, bead: Bead, direction: float, layers: int, steps: int) -> None:
         self.material, self.bead, self.direction, self.layers, self.steps = material, bead, direction, layers, steps
-        self.middle = bead.radius + bead.thickness / 2  # radii of the middle of the sheet
-        self.edge = bead.shoulder + bead.thickness / 2
-        self.moments, self.forces, self.pressed = [0.0] * 3, [0.0] * 3, [0.0] * 4
-        self.returned = [0.0] * 3  # elastic curvatures of the moments at the contacts, 1/mm
-        self.rise = 1.0, 0.5  # integrals of k and of k (1 - x) over x = 0 to 1, M = x M1, over the curvature at M1
+        edge, middle = bead.shoulder + bead.thickness / 2, bead.radius + bead.thickness / 2
+        self.radii, self.height = (edge, middle, edge), 0.0
+        self.unknowns = np.array(START)
+        self.unknowns[5] = bead.half + START[5] * bead.thickness
+        self.offsets = [np.zeros(NODES + 1) for _ in SIDES]
+        self.pressed, self.presses, self.beyond = [0.0] * 4, [0.0] * 3, [0.0] * 3
 
-    def turn(self, radius: float) -> float:
-        """Return the slope at which an arc of a radius, mm, begins at the entry shoulder, radian: between the plates
-        the moment rises from nothing in proportion to the distance, and the curvature with it."""
-        return self.rise[0] * math.sqrt(self.bead.gap / (self.rise[1] * radius))
+    def centre(self, i: int) -> tuple[float, float]:
+        """Return the centre of a tool, mm."""
+        return ((-self.bead.half, -self.radii[0]), (0.0, self.radii[1] - self.height),
+                (self.bead.half, -self.radii[2]))[i]
 
-    def arcs(self) -> list[Arc]:
-        """Return the arcs at the entry shoulder, the bead and the exit shoulder."""
-        half, height, middle, edge = self.bead.half, self.bead.height, self.middle, self.edge
+    def place(self, i: int, slope: float) -> tuple[float, float]:
+        """Return the place of the middle of the sheet on a tool, mm."""
+        (x, y), reach = self.centre(i), SIDES[i] * self.radii[i]
+        return x + reach * math.sin(slope), y + reach * math.cos(slope)
 
-        def down(radius: float) -> tuple[float, float, float]:
-            turn, beyond = self.turn(radius), radius - edge
-            slope, square = tangent(half + beyond * math.sin(turn), middle + edge - height + beyond * math.cos(turn),
-                                    radius + middle)
-            return slope, slope - turn, square
+    def curvature(self, i: int) -> float:
+        """Return the curvature of the sheet at a tool, 1/mm."""
+        return (1 + min(float(self.unknowns[i]), 0.0)) / self.radii[i]
 
-        entry = arc_of(down, edge, self.moments[0], self.forces[0])
+    def bend(self) -> None:
+        """Bend a section along the path: moments over the curvatures, tensions behind the tools."""
+        bead = self.bead
+        self.section = section = Section(self.material, bead.thickness, self.layers, self.direction)
+        self.start, last = 2 * bead.friction * bead.clamping, 0.0
+        if self.start:
+            section.pull(self.start, PULLS)
+        records: list[np.ndarray] = []
+        self.tensions: list[float] = []
+        for i, side in enumerate((*SIDES, 0)):
+            record = [np.array([[last], [section.moment]])]
+            if last:
+                moments = section.bend(0.0, self.steps)
+                record.append(np.array([last * (1 - parts(self.steps)), moments])[:, 1:])
+            if side:
+                last = side * self.curvature(i)
+                moments = section.bend(last, self.steps, self.presses[i] / bead.thickness, self.beyond[i])
+                record.append(np.array([last * parts(self.steps), moments])[:, 1:])
+                self.rub(i)
+                self.tensions.append(section.force - section.moment * last)
+            records.append(np.hstack(record))
+        self.rise = Branch.of(-records[0][0], -records[0][1], section.stiffness)
+        self.branches = [Branch.of(side * curvatures, side * moments, section.stiffness)
+                         for side, (curvatures, moments) in zip(SIDES, records[1:])]
 
-        def up(radius: float) -> tuple[float, float, float]:
-            beyond = radius - middle
-            slope, square = tangent(half - beyond * math.sin(entry.slope),
-                                    middle + edge - height + beyond * math.cos(entry.slope), radius + edge)
-            return slope, slope + entry.slope, square
+    def rub(self, i: int) -> None:
+        """Add the friction at a tool, which acts at its face, the force in the middle of the sheet."""
+        if self.bead.friction and self.pressed[i]:
+            arm = 1 - self.bead.thickness / 2 / self.radii[i]
+            self.section.pull(self.section.force + self.bead.friction * self.pressed[i] * arm, PULLS)
 
-        bead = arc_of(up, middle, self.moments[1], self.forces[1])
-        widest = edge + self.bead.gap / (1 - math.cos(bead.slope))
-        flat = 2 * self.moments[2] / (self.forces[2] * bead.slope**2) if self.forces[2] > 0 else widest
-        return [entry, bead, Arc(min(max(flat, edge), widest), flat < widest, 0.0, bead.slope)]
+    def entry(self, curvature: float) -> tuple[float, float, float, float]:
+        """Return slope, radian, and moment, N, at the entry shoulder, the distance before it from which the sheet is
+        lifted from the plate, mm, and the curvature near the shoulder: the moment rises in proportion to the
+        distance."""
+        moment = -self.rise.moment(-curvature)
+        part = np.linspace(0.0, 1.0, 4 * self.steps + 1)
+        bent = np.interp(part * moment, -self.rise.moments[::-1], -self.rise.curvatures[::-1])
+        turn, fall = (float((values[1:] + values[:-1]).sum()) / 2 * float(part[1]) for values in
+                      (bent, bent * (1 - part)))
+        length = math.sqrt(self.bead.gap / fall)
+        for _ in range(PASSES):
+            drop = self.radii[0] * (1 - math.cos(min(length * turn, math.pi / 2)))
+            length = math.sqrt((self.bead.gap + drop) / fall)
+        near = float(np.interp(1 - min(1.0, NEAR * self.bead.thickness / length), part, bent))
+        return length * turn, moment, length, near
+
+    def path(self, unknowns: np.ndarray) -> Path:
+        """Return the path of unknowns."""
+        self.unknowns = unknowns
+        curvatures = [self.curvature(i) for i in range(3)]
+        slope, moment, lifted, self.near = self.entry(curvatures[0])
+        coming, leaving, spans, residual = [slope, *map(float, unknowns[3:5])], [], [], []
+        for i, side in enumerate(SIDES):
+            leaving.append(coming[i] + side * max(float(unknowns[i]), 0.0))
+            last = i == len(SIDES) - 1
+            end = (float(unknowns[5]), self.bead.gap) if last else self.place(i + 1, coming[i + 1])
+            start = Start(self.place(i, leaving[i]), leaving[i], moment, curvatures[i], self.tensions[i], side)
+            span = free_span(start, end, 0.0 if last else curvatures[i + 1], self.branches[i], self.offsets[i],
+                             NEAR * self.bead.thickness)
+            residual += [span.slopes[0] - leaving[i], span.slopes[1] - (0.0 if last else coming[i + 1])]
+            spans.append(span)
+            moment = -span.moment
+        self.offsets = [span.offsets for span in spans]
+        return Path(curvatures, coming, leaving, lifted, spans, np.array(residual))
+
+    def solve(self) -> Path | None:
+        """Return the path at the height reached, None if it is not found."""
+        before, bead = (self.unknowns.copy(), [one.copy() for one in self.offsets]), self.bead
+        low = [LOWEST, LOWEST, LOWEST, -math.pi / 2, -math.pi / 2, bead.half]
+        high = [WIDEST / 2, WIDEST, WIDEST / 2, math.pi / 2, 0.0, bead.half + FARTHEST * bead.thickness]
+        found = least_squares(lambda unknowns: self.path(unknowns).residual, np.clip(self.unknowns, low, high),
+                              bounds=(low, high), x_scale=SCALES, max_nfev=EVALUATIONS, ftol=1e-14, xtol=1e-12,
+                              gtol=1e-14)
+        path = self.path(found.x)
+        if float(np.abs(path.residual).max()) <= FOUND:
+            return path
+        self.unknowns, self.offsets = before
+        return None
+
+    def close(self) -> Path:
+        """Return the path at the height of the bead, from a low one on with the moments of the last pass."""
+        step, path = self.bead.thickness, None
+        while self.height < self.bead.height or path is None:
+            reached = self.height
+            self.height = min(self.bead.height, reached + step)
+            path = self.solve()
+            if path is None:
+                self.height, step = reached, step / 2
+                if step < SHORTEST * self.bead.thickness:
+                    raise Problem(f"the path of the sheet is not found beyond a height of the bead of {reached:.3g} mm")
+        return path
 
     def flow(self) -> Result:
-        """Make a pass: bend the sheet along the arcs, and find the forces."""
-        arcs, bead = self.arcs(), self.bead
-        section = Section(self.material, bead.thickness, self.layers, self.direction)
-        start = 2 * bead.friction * bead.clamping
-        if start:
-            section.pull(start, PULLS)
-        reached = [min(1 / arc.radius + elastic, 1 / least) for arc, elastic, least in
-                   zip(arcs, self.returned, (self.edge, self.middle, self.edge))]
-        bent: list[float] = []
-        unbent: list[float] = []
-        moments: list[float] = []
-        for curvature, radius, sign, pressed in zip(reached, (bead.shoulder, bead.radius, bead.shoulder), (1, -1, 1),
-                                                    self.pressed):
-            rising = np.abs(section.bend(sign * curvature, self.steps))
-            if not moments:
-                self.rise = integrals(rising)
-            moments.append(float(rising[-1]))
-            if bead.friction and pressed:
-                # Friction acts at the tool, the force in the middle of the sheet.
-                section.pull(section.force + bead.friction * pressed * radius / (radius + bead.thickness / 2), PULLS)
-            bent.append(section.force)
-            section.bend(0.0, self.steps)
-            unbent.append(section.force)
+        """Make a pass: bend the section along the path, find the next path and the forces."""
+        self.bend()
+        path = self.solve() if self.height else None
+        if path is None:
+            self.height, self.unknowns = 0.0, np.array([*START[:5], self.bead.half + START[5] * self.bead.thickness])
+            self.offsets = [np.zeros(NODES + 1) for _ in SIDES]
+            path = self.close()
+        bead, section, forces = self.bead, self.section, [span.force for span in path.spans]
+        entry = -self.rise.moment(-path.curvatures[0]) / path.lifted
         last = abs(section.moment)
-        self.moments = [moments[0] + moments[1], moments[1] + moments[2], moments[2] + last]
-        self.returned = [moments[0] / section.stiffness, moments[1] / section.stiffness, 0.0]
-        self.forces = bent
-        forces = self.flanks(arcs, bent, unbent)
-        entry = moments[0] / math.sqrt(bead.gap / (reached[0] * self.rise[1]))
-        # Behind the exit shoulder the sheet is elastic.
+        # Behind the plate the sheet is elastic.
         behind = last / max(bead.thickness, math.sqrt(6 * bead.gap * section.stiffness / max(last, LEAST)))
-        around = [self.around(i, arc) for i, arc in enumerate(arcs)]
-        self.pressed = [math.hypot(forces[0][1] + entry, forces[0][0] - start) * around[0] + entry,
-                        math.hypot(forces[0][1] + forces[1][1], forces[1][0] - forces[0][0]) * around[1],
-                        math.hypot(forces[1][1] - forces[2][1], forces[2][0] - forces[1][0]) * around[2],
-                        2 * behind - forces[2][1]]
-        return Result(section.force + bead.friction * self.pressed[3], forces[0][1] + forces[1][1], entry,
-                      behind - forces[2][1], (reached[0], reached[1], reached[2]),
-                      (math.degrees(arcs[0].slope), math.degrees(arcs[1].slope)), -math.log(section.stretch),
-                      section.plastic)
+        before = [np.array([self.start, entry]), *forces[:2]]
+        on = [float(np.hypot(*(first - second))) for first, second in zip(before, forces)]
+        self.press(path, on, entry)
+        self.pressed = [force * around(abs(leave - come)) for force, leave, come in
+                        zip(on, path.leaving, path.coming)] + [2 * behind - forces[2][1]]
+        self.pressed[0] += entry
+        first, second, third = path.curvatures
+        return Result(section.force + bead.friction * self.pressed[3], forces[1][1] - forces[0][1], entry,
+                      behind - forces[2][1], (first, second, third),
+                      (math.degrees(path.spans[0].steepest), -math.degrees(path.spans[1].steepest)),
+                      -math.log(section.stretch), section.plastic)
 
-    def around(self, i: int, arc: Arc) -> float:
-        """Return the sum of the pressure of a tool over its resultant: 1 of a point, x/sin x of an arc of 2 x."""
-        if arc.radius > (self.middle if i == 1 else self.edge) + CONTACT or self.forces[i] <= 0:
-            return 1.0
-        half = (arc.angle - math.sqrt(2 * self.moments[i] / (self.forces[i] * arc.radius))) / 2
-        return half / math.sin(half) if half > 0 else 1.0
-
-    def flanks(self, arcs: list[Arc], bent: list[float], unbent: list[float]) -> list[tuple[float, float]]:
-        """Return the forces in the three arcs, N/mm, along the sheet and across: downwards in the first one, upwards in
-        the others."""
-        entry, bead, leaving = arcs
-        middle, edge, half = self.middle, self.edge, self.bead.half
-        above = middle - self.bead.height  # of the middle of the bead, and of the shoulders, -edge
-        turn = entry.slope - entry.angle
-        touch = entry.slope
-        if bead.straight and bead.radius <= middle + CONTACT:  # the sheet leaves the bead behind the first contact
-            touch = -max(-entry.slope, bead.slope - math.sqrt(2 * self.moments[1] / (self.forces[1] * middle)))
-        first = np.array([-half + edge * math.sin(turn), edge * math.cos(turn) - edge])
-        lower, left = (np.array([-middle * math.sin(at), above - middle * math.cos(at)]) for at in (entry.slope, touch))
-        last = np.array([half - edge * math.sin(bead.slope), edge * math.cos(bead.slope) - edge])
-        found = []
-        for i, (arc, chord) in enumerate(((entry, lower - first), (bead, last - left))):
-            if arc.straight:
-                found.append((unbent[i] * math.cos(arc.slope), unbent[i] * math.sin(arc.slope)))
-            else:
-                found.append(turned(bent[i], self.moments[i], float(np.hypot(*chord)),
-                                    math.atan2(abs(chord[1]), chord[0])))
-        along, across = turned(bent[2], -self.moments[2], 2 * leaving.radius * math.sin(bead.slope / 2), bead.slope / 2)
-        return [*found, (along, across) if across < 0 else (unbent[2], 0.0)]
+    def press(self, path: Path, on: list[float], entry: float) -> None:
+        """Take the forces, N/mm, by which the tools press on the sheet where it comes to them, and the curvatures from
+        which on they do: all of the force where the sheet does not follow the tool."""
+        arriving = [entry, *(span.pressing for span in path.spans[:2])]
+        near = [self.near, *(max(0.0, -span.near) for span in path.spans[:2])]
+        for i in range(3):
+            force = on[i] if self.unknowns[i] <= 0 else arriving[i]
+            self.presses[i] += (force - self.presses[i]) * (HALF if self.presses[i] else 1.0)
+            self.beyond[i] = near[i]
 
 
-def integrals(moments: np.ndarray) -> tuple[float, float]:
-    """Return the integrals of `Strip.rise`; moments: before and after each step of a bend."""
-    curvatures = parts(len(moments) - 1)
-    at = (curvatures[1:] + curvatures[:-1]) / 2
-    part, steps = (moments[1:] + moments[:-1]) / (2 * moments[-1]), np.diff(moments) / moments[-1]
-    return float(at @ steps), float((at * (1 - part)) @ steps)
-
-
-def turned(force: float, moments: float, chord: float, slope: float) -> tuple[float, float]:
-    """Return the components of a force along a chord and of the moments over its length across."""
-    across = moments / chord
-    return (force * math.cos(slope) - across * math.sin(slope), force * math.sin(slope) + across * math.cos(slope))
+def around(angle: float) -> float:
+    """Return the sum of the pressure of a tool over its resultant, x/sin x of an arc of 2 x."""
+    half = angle / 2
+    return half / math.sin(half) if half > 0 else 1.0
 
 
 def flow(material: Material, bead: Bead, direction: float = 0.0, layers: int = LAYERS, steps: int = STEPS) -> Result:
     """Return what a bead does to a sheet that is drawn through it at an angle to the rolling direction, degrees."""
-    strip, last = Strip(material, bead, direction, layers, steps), math.inf
+    strip, last = Strip(material, bead, direction, layers, steps), np.full(2, math.inf)
     for _ in range(PASSES):
         result = strip.flow()
-        if abs(result.restraint - last) <= SAME * result.restraint + ZERO * result.uplift:
+        forces = np.array([result.restraint, result.uplift])
+        if (np.abs(forces - last) <= SAME * np.abs(forces) + ZERO * result.uplift).all():
             return result
-        last = result.restraint
-    raise Problem(f"the force of the bead does not converge in {PASSES} passes, {result.restraint:.4g} N/mm")
+        last = forces
+    raise Problem(f"the force of the bead does not settle in {PASSES} passes, {result.restraint:.4g} N/mm")

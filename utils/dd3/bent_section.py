@@ -3,7 +3,7 @@
 
 The section is divided into layers. By constant volume, a layer at the initial height z has the stretch l, l^2 = s^2 +
 2 s k z, with the stretch s and the curvature k of the middle. The stress across the layers follows from radial
-equilibrium, from nothing at the convex face.
+equilibrium, from nothing at the convex face; the pressure of a tool is added, linear to the convex face.
 
 In a steady flow the power that passes through a section is P v, v the speed of the middle, with P = T + k M of the
 tension T and the moment M per width; P s is the sum of stress times initial thickness of the layers. Without friction P
@@ -83,6 +83,7 @@ class Section:
         self.layers = [Layer(material, np.array([c * c, s * s, 0, 2 * c * s, 0, 0])) for _ in range(layers)]
         self.lengths, self.radial = np.ones(layers), np.zeros(layers)
         self.stretch, self.curvature, self.force, self.moment = 1.0, 0.0, 0.0, 0.0
+        self.pressure = 0.0  # of a tool on the concave face, MPa
         self.layers[0].attempt(0.0, 0.0)
         self.stiffness = self.layers[0].slope * thickness**3 / 12  # elastic, of bending, N mm
 
@@ -91,12 +92,14 @@ class Section:
         """Return the equivalent plastic strains of the layers, from the lower face."""
         return np.array([layer.committed[1][0] for layer in self.layers])
 
-    def bend(self, curvature: float, steps: int) -> np.ndarray:
-        """Go to a curvature of the middle, 1/mm; the force follows from the work. Return the moments before and after
-        each step, N."""
+    def bend(self, curvature: float, steps: int, pressure: float = 0.0, beyond: float = 0.0) -> np.ndarray:
+        """Go to a curvature of the middle, 1/mm; the force follows from the work. pressure: of a tool on the concave
+        face, MPa, from a curvature on, until the next bend. Return the moments before and after each step, N."""
         start, moments = self.curvature, [self.moment]
         for part in parts(steps)[1:]:
-            self.go(start + (curvature - start) * float(part), None)
+            at = start + (curvature - start) * float(part)
+            self.pressure = pressure if abs(at) > beyond else 0.0
+            self.go(at, None)
             moments.append(self.moment)
         return np.array(moments)
 
@@ -163,4 +166,5 @@ class Section:
         rises = difference * abs(curvature) * stretch / lengths**2 * self.size
         outside = rises[::-1] if curvature > 0 else rises
         stresses = -(np.cumsum(outside) - outside / 2)
-        return np.asarray(stresses[::-1] if curvature > 0 else stresses)
+        concave = 0.5 - math.copysign(1.0, curvature) * self.heights / self.thickness
+        return np.asarray(stresses[::-1] if curvature > 0 else stresses) - self.pressure * concave

@@ -11,7 +11,7 @@ yield surface with its normals, r-values and yield stresses by angle; the broken
 Hardening laws: tension as true and as nominal stress, with a dot at the largest force. Back-stresses and laws that
 depend on the strain path: reversals and changes of the path. Chord modulus: tension with unloadings. Strain rate:
 tension at four rates, and with jumps of the rate and relaxation. Fracture: damage, and strains to fracture in plane
-stress.
+stress; of a table over triaxiality and Lode angle.
 """
 
 import argparse
@@ -260,12 +260,57 @@ def fracture(program, law, figure):
     legend(axes[0])
 
 
+def fracture_table(program, law, figure):
+    """Draw the strain to fracture of a table over triaxiality and Lode angle, by points of constant stress state, the
+    points of the table, and the states of plane stress."""
+    angles, levels, stress = np.linspace(-1, 1, 33), np.linspace(-0.1, 0.8, 46), 300.0
+    text = FRACTURE.format(" ".join(f"lode{k}={lode:g}" for k, lode in enumerate(LODE, 1)),
+                           "  ".join(f"{x:g}:{y:g}" for curve in LODE.values() for x, y in curve))
+    for i, lode in enumerate(angles):
+        deviator = 2 / 3 * np.cos((1 - lode) * np.pi / 6 - np.array([0, 2, -2]) * np.pi / 3)
+        for k, level in enumerate(levels):
+            target = " ".join(f"{value:.8g}" for value in stress * (deviator + level))
+            text += f"*POINT p{i}_{k}\n  material = steel\n  control = {STRESSES}\n  target = {target} 0 0 0 steps=1\n"
+    points = pp.run(program, text)[1]
+    strain, damage = (np.array([[points[f"p{i}_{k}"][-1][key] for k in range(len(levels))] for i in range(len(angles))])
+                      for key in ("eqps", "fracture_damage"))
+    axes = figure.subplots(1, 2)
+    image = axes[0].contourf(levels, angles, strain / damage, 12, cmap="viridis")
+    figure.colorbar(image, ax=axes[0])
+    axes[0].grid(False)
+    plane = np.linspace(-np.pi / 4, np.pi / 4, 181)
+    first, second = np.cos(plane), np.sin(plane)
+    size = np.sqrt(first**2 - first * second + second**2)
+    cube = 27 / 2 * (2 * first - second) * (2 * second - first) * -(first + second) / 27 / size**3
+    axes[0].plot((first + second) / 3 / size, 1 - 2 / np.pi * np.arccos(np.clip(cube, -1, 1)), **{
+        **BROKEN, "color": "white", "label": "plane stress"})
+    for k, (lode, curve) in enumerate(LODE.items()):
+        x, y = np.array(curve).T
+        axes[0].plot(x, np.full(len(x), lode), "o", color="white", markeredgecolor="black", clip_on=False)
+        axes[1].plot(levels, (strain / damage)[np.argmin(np.abs(angles - lode))], color=f"C{k}", label=f"{lode:g}")
+        axes[1].plot(x, y, "o", color=f"C{k}")
+    axes[0].set(xlabel="triaxiality", ylabel="normalised Lode angle", title="plastic strain to fracture")
+    axes[1].set(xlabel="triaxiality", title="plastic strain to fracture", ylim=(0, None))
+    axes[0].legend(fontsize="small", loc="lower right", labelcolor="white")
+    legend(axes[1], title="Lode angle")
+
+
 def columns(rows, *keys):
     """Return columns of rows."""
     return [np.array([row[key] for row in rows]) for key in keys]
 
 
 TABLE = ((0, 160), (0.02, 230), (0.1, 310), (0.25, 400), (0.5, 480))
+# Strains to fracture over the triaxiality by the normalised Lode angle: the example of docs/laws/table.md.
+LODE = {-1: ((0, 1.4), (0.667, 0.9)), 0: ((0, 0.7), (0.577, 0.5)), 1: ((0, 1.1), (0.333, 0.9))}
+STRESSES = "s11 s22 s33 s12 s23 s13"
+FRACTURE = """*MATERIAL steel
+  young = 2.1e5
+  poisson = 0.3
+  yield = von_mises
+  hardening = linear Y0=200 H=1000
+  fracture = table {} {}
+"""
 PICTURES = {
     "von_mises": (isotropic, {}), "hill48": (orthotropic, {"measured": STEEL}), "hosford": (isotropic, {}),
     "yld91": (orthotropic, {"measured": STEEL}), "karafillis_boyce": (orthotropic, {}),
@@ -277,7 +322,7 @@ PICTURES = {
     "table": (tension, {"points_of": TABLE}), "teodosiu_hu": (teodosiu_hu, {}),
     "yoshida_uemori": (yoshida_uemori, {}), "chord": (chord, {}),
     **{law: (rates, {}) for law in ("cowper_symonds", "johnson_cook", "power", "curves")}, "prager": (prager, {}),
-    "hosford_coulomb": (fracture, {}),
+    "hosford_coulomb": (fracture, {}), "fracture_table": (fracture_table, {}),
     "lemaitre_chaboche": (lemaitre_chaboche, {}),
 }
 

@@ -22,6 +22,7 @@ import numpy as np
 from dd3.account import LeftOut
 from dd3.command import new_parser
 from dd3.dyna.blank import Blank, blank_of, with_sets
+from dd3.dyna.damage import take_fracture
 from dd3.dyna.deck import Deck, Drive
 from dd3.dyna.laws import UNITS, Law, Units, law_of, number_of, units_of, use_rigid
 from dd3.dyna.mesh import Part
@@ -60,6 +61,7 @@ class Import:
         self.units: Units = units_of(self.material, units)
         self.blank: Blank = blank_of(deck, self.part, self.units)
         self.law: Law = law_of(deck, self.material, self.units, self.blank.axes)
+        take_fracture(deck, self.part.material, self.law)
         self.notes = [*deck.notes, *self.law.notes]
         if self.blank.bent > BENT and any("AOPT = 0" in note for note in self.law.notes):
             self.notes.append(f"rolling direction: the first edges of the elements differ by up to "
@@ -262,7 +264,8 @@ class Import:
                  *(f"  backstress = {law}" for law in self.law.backstresses),
                  *([f"  modulus = {self.law.modulus}"] if self.law.modulus else []),
                  *([f"  rate = {self.law.rate}"] if self.law.rate else []),
-                 *(f"  {entry}" for entry in self.law.heating)]
+                 *(f"  {entry}" for entry in self.law.heating),
+                 *([f"  fracture = {self.law.fracture}"] if self.law.fracture else [])]
         if self.law.density:
             lines.append(f"  density = {self.law.density:.6g}")
         if self.law.rolling:

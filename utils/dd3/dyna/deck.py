@@ -43,6 +43,7 @@ REASONS = (
     ("*EOS", "equations of state are not available"),
     ("*ELEMENT", "elements other than shells and solids"),
 )
+DAMAGES = "*MAT_ADD_EROSION", "*MAT_ADD_DAMAGE_GISSMO"
 SHELL = ("SECID ELFORM SHRF=1 NIP PROPT=1 QR ICOMP SETYP=1", "T1 T2 T3 T4 NLOC MAREA IDOF EDGSET")
 CONTACT = ("SURFA SURFB SURFATYP SURFBTYP SABOXID SBBOXID SAPR SBPR", "FS FD DC VC VDC PENCHK BT DT=1E20",
            "SFSA=1 SFSB=1 SAST SBST SFSAT=1 SFSBT=1 FSF=1 VSF=1")
@@ -137,6 +138,7 @@ class Deck:
         self.drives: list[Drive] = []
         self.supports: list[Card] = []
         self.gravity: list[Gravity] = []
+        self.damages: list[Card] = []  # fracture that is added to a material
         self.heavy: list[Row] = []  # of *LOAD_BODY_PARTS
         self.hung: list[tuple[str, list[int]]] = []
         self.notes = [*moves, *(f"{place}: a second *PARAMETER {name}; the first holds, as in LS-DYNA"
@@ -169,6 +171,9 @@ class Deck:
         reader = KNOWN.get(word) or next((one for beginning, one in BEGINNINGS if word.startswith(beginning)), None)
         if reader:
             reader(self, card)
+        elif word in DAMAGES and card.lines:
+            self.damages.append(card)
+            card.leave("nothing here uses its material")
         elif word.startswith("*MAT_") and not word.startswith("*MAT_ADD"):
             self.take_material(card)
         elif word.startswith("*CONTACT_") and ("SURFACE_TO_SURFACE" in word or "NODES_TO_SURFACE" in word):

@@ -57,6 +57,7 @@ class Law:
     modulus: str = ""
     rate: str = ""
     heating: list[str] = field(default_factory=list)
+    fracture: str = ""
     density: float = 0.0
     notes: list[str] = field(default_factory=list)
 

@@ -22,17 +22,43 @@ class Block:
         return next((value for name, value in reversed(self.values) if name == key), None)
 
 
-def lines_of(path: str | Path, parents: tuple[Path, ...] = ()) -> Iterator[str]:
-    """Yield the lines of a file and of those it includes; no comments, no empty lines."""
-    path = Path(path)
+def lines_of(path: str | Path) -> Iterator[str]:
+    """Yield the lines of a file and of those it includes, in whose names parameters are put in; no comments, no empty
+    lines."""
+    yield from lines_with(Path(path), (), Parameters())
+
+
+def lines_with(path: Path, parents: tuple[Path, ...], parameters: "Parameters") -> Iterator[str]:
+    """Yield the lines of a file and of those it includes; parents: the files that include it."""
     for line in lines_of_text(read_text(path)):
+        parameters.follow(line)
         include = re.match(r"\*include\s+(.*)", line, re.IGNORECASE)
         if include:
-            file = path.parent / include[1].strip("\"'")
+            file = path.parent / parameters.put(include[1]).strip("\"'")
             if file not in (*parents, path):  # a ring
-                yield from lines_of(file, (*parents, path))
+                yield from lines_with(file, (*parents, path), parameters)
         else:
             yield line
+
+
+class Parameters:
+    """The parameters of an input file, by the lines that were read; the first value of a name holds."""
+
+    def __init__(self) -> None:
+        self.values: dict[str, str] = {}
+        self.inside = False  # of *PARAMETER
+
+    def follow(self, line: str) -> None:
+        """Take a line."""
+        if line.startswith("*"):
+            self.inside = line[1:].lower().split()[:1] == ["parameter"]
+        elif self.inside:
+            key, _, value = (part.strip() for part in line.partition("="))
+            self.values.setdefault(key.lower(), self.put(value))
+
+    def put(self, text: str) -> str:
+        """Return a text with the parameters put in; unknown ones are left."""
+        return re.sub(r"\$\{(\w+)\}", lambda found: self.values.get(found[1].lower(), found[0]), text)
 
 
 def lines_of_text(text: str) -> Iterator[str]:
@@ -49,16 +75,14 @@ def read_blocks(path: str | Path) -> list[Block]:
 
 def blocks_of(lines: Iterable[str]) -> list[Block]:
     """Return the blocks of lines, the parameters put in."""
-    parameters: dict[str, str] = {}
+    parameters = Parameters()
     blocks: list[Block] = []
     for line in lines:
+        parameters.follow(line)
         if line.startswith("*"):
             keyword, *name = line[1:].split(None, 1)
             blocks.append(Block(keyword.lower(), "".join(name)))
         elif blocks:
             key, _, value = (part.strip() for part in line.partition("="))
-            value = re.sub(r"\$\{(\w+)\}", lambda found: parameters.get(found[1].lower(), found[0]), value)
-            blocks[-1].values.append((key.lower(), value))
-            if blocks[-1].keyword == "parameter":
-                parameters.setdefault(key.lower(), value)
+            blocks[-1].values.append((key.lower(), parameters.put(value)))
     return blocks
