@@ -97,10 +97,36 @@ def read_sheet(shape: Shape, rays: Rays) -> Sheet:
     fraction = float(weight[equal & of_sides].sum() / weight[of_sides].sum())
     if fraction < UNIFORM:
         return Sheet("block", sides=(shape.tags, []))
-    first, second = two_sides(shape, sides, here, there, weight[at])
+    joined = joined_smoothly(shape, sides, here, there)
+    first, second = two_sides(shape, sides + joined, here, there, weight[at])
     if min(sum(shape.areas[tag] for tag in side) for side in (first, second)) < ONE_SIDED * area:
         return Sheet("block", sides=(shape.tags, []), walls=thickness)
-    return Sheet("sheet", thickness, fraction, (first, second), [tag for tag in shape.tags if tag not in sides])
+    return Sheet("sheet", thickness, fraction, (first, second),
+                 [tag for tag in shape.tags if tag not in sides and tag not in joined])
+
+
+def joined_smoothly(shape: Shape, sides: list[int], here: np.ndarray, there: np.ndarray) -> list[int]:
+    """Return the faces that are not of the sides by their thickness, but go on smoothly from those of one side, such as
+    fillets whose radii do not differ by the thickness. Groups of them that join two faces which face each other, `here`
+    and `there` by samples, are rounded rims."""
+    beside: defaultdict[int, set[int]] = defaultdict(set)
+    for edge in shape.edges.values():
+        if len(edge.faces) == 2 and not edge.angle:
+            beside[edge.faces[0]].add(edge.faces[1])
+            beside[edge.faces[1]].add(edge.faces[0])
+    facing = set(zip(here.tolist(), there.tolist()))
+    left, found = set(shape.tags) - set(sides), list[int]()
+    while left:
+        group, waiting, joins = set[int](), [min(left)], set[int]()
+        while waiting:
+            tag = waiting.pop()
+            left.discard(tag)
+            group.add(tag)
+            joins |= beside[tag] - left - group
+            waiting += beside[tag] & left
+        if joins and not any((a, b) in facing for a in joins for b in joins):
+            found += sorted(group)
+    return found
 
 
 def through_thickness(shape: Shape, here: np.ndarray, there: np.ndarray) -> set[int]:
