@@ -20,6 +20,7 @@ from dd3.part.reading import Request, read_part
 from dd3.part.table import summary
 from dd3.tools.cad_file import silence
 from dd3.tools.cad_mesh import Model, overlapping
+from dd3.tools.cut import is_closed, of_axes, planes_through
 from dd3.tools.patch_distance import Distance
 
 
@@ -181,6 +182,23 @@ def test_corners_left_open(folder, tmp_path, monkeypatch):
         reading = read_part(model, Request(tmp_path / "cover.step", toward=(0, 0, 1)))
         closed_part(model, reading, reading.direction.upper)
     assert "as the part is a surface" in reading.warnings[-1], reading.warnings
+
+
+def test_turned_cuts():
+    """Check that planes that cut faces which close in themselves go through their axis and their seam, however the part
+    lies, and that faces with one axis have the same planes."""
+    axis, place = np.array([2, -3, 6]) / 7, np.array([120.0, -40.0, 33.0])
+    with session() as gmsh:
+        gmsh.model.occ.addCone(*place, *(20 * axis), 30, 40)
+        gmsh.model.occ.addCylinder(*(place + 20 * axis), *(9 * axis), 40)
+        gmsh.model.occ.synchronize()
+        closed = [tag for _, tag in gmsh.model.getEntities(2) if is_closed(gmsh, tag)]
+        planes = [planes_through(gmsh, tag) for tag in closed]
+        seam = np.array(gmsh.model.getValue(0, gmsh.model.getBoundary([(2, closed[0])], recursive=True)[0][1], []))
+    assert len(closed) == 2 and len(of_axes(planes, 100.0)) == 2
+    for pair in planes:
+        assert max(max(abs(normal @ axis), abs((place - point) @ normal)) for point, normal in pair) < 1e-9
+    assert min(abs((seam - point) @ normal) for point, normal in planes[0]) < 1e-9
 
 
 def test_overlapping():

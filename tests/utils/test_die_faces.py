@@ -16,8 +16,12 @@ from dd3.part.reading import Request, read_part
 from dd3.tools import binder, mitres
 from dd3.tools.binder import developable, inclined, level, of_points
 from dd3.tools.cad_file import silence
+from dd3.tools.die_face import Reach, goes_around, strip, width_of
 from dd3.tools.joints import find_joints, folded, kinks
 from dd3.tools.patch_distance import Distance
+from dd3.tools.plane import area_of, chords, crosses
+from dd3.tools.rims import Rim, along_edges, find_rims
+from dd3.tools.surface import Surface, from_nodes
 
 NAMES = ["hat", "pan", "sharp_hat", "stepped_hat", "z_section", "saddle_tray"]
 SLOW = ["own_flange", "flanged_cover", "island_tray", "sharp_tray", "arched_rail", "s_rim_tray"]
@@ -143,6 +147,40 @@ def test_binders():
     assert of_points(np.stack([x, y, x * y / 200], axis=1), 0.002)[1] > 1.0
     assert inclined(arc).distance(arc) > found.distance(arc) and level(0.0).z(np.zeros(2)) == 0.0
     assert developable(arc).distance(arc) < 0.1
+
+
+def test_climbing_ends():
+    """Check that an end that climbs by 17 degrees is a rim at which a wall goes on, but the open end of a part with a
+    flange beside it is none."""
+    x, y = np.meshgrid(np.linspace(0, 10, 3), np.linspace(0, 10, 3))
+    surface = Surface(from_nodes(np.stack([x, y, 0.3 * x], axis=-1)[None]), np.zeros(1, int), ["floor"])
+    joints = find_joints(surface.net)
+    points, _ = along_edges(surface, joints.free)
+    beside = joints.free[np.abs(points[..., 1] - 10).max(axis=1) < 1e-9]
+    rims, others = find_rims(surface, joints)
+    assert others == 3 and len(rims) == 1 and np.allclose(rims[0].points[:, 0], 10)
+    assert find_rims(surface, joints, beside) == ([], 3)
+
+
+def test_rim_around():
+    """Check the strip beside a rim that goes around the half of a rounded rectangle: what is left of the rectangle that
+    encloses both, as wide as the blank needs on three sides."""
+    turn = np.linspace(0, np.pi / 2, 9)
+    lower = np.stack([32 + 8 * np.sin(turn), -22 - 8 * np.cos(turn)], axis=1)
+    upper = lower[::-1] * [1, -1]
+    lines = [np.linspace(a, b, 9) for a, b in (((0, -30), lower[0]), (lower[-1], upper[0]), (upper[-1], (0, 30)))]
+    plan = np.concatenate([lines[0], lower[1:], lines[1][1:], upper[1:], lines[2][1:]])
+    points = np.column_stack([plan, np.zeros(len(plan))])
+    out = np.zeros_like(points)
+    out[0, 1], out[-1, 1] = -1, 1
+    reach = Reach(Rim(points, out, out, False, np.zeros(len(points), bool)), level(0.0), points, 0.0)
+    assert goes_around(reach)
+    blank = np.array([[0, -38], [47, -38], [47, 38], [0, 38]])
+    reach.width = width_of(reach, blank, 2.0)
+    assert abs(reach.width - 10) < 1e-9
+    corner = chords(strip(reach, points))
+    inner = area_of(plan[::4])
+    assert not crosses(corner) and abs(area_of(corner) - (50 * 80 - inner)) < 1e-6
 
 
 def test_large_flange(monkeypatch):

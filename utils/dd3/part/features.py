@@ -64,27 +64,45 @@ def read_roles(shape: Shape, direction: Direction, outer: Loop | None) -> dict[i
                           float(shape.centres[tag] @ direction.vector))
     level = [tag for tag, role in roles.items() if role.name == "level"]
     for group in shape.components(level):
-        name = level_name(shape, roles, group, outer)
+        name = level_name(shape, roles, group, outer, direction.vector)
         for tag in group:
             roles[tag].name = name
     return roles
 
 
-def level_name(shape: Shape, roles: dict[int, Role], group: set[int], outer: Loop | None) -> str:
+def level_name(shape: Shape, roles: dict[int, Role], group: set[int], outer: Loop | None, up: np.ndarray) -> str:
     """Return the name of connected level faces: floor where the faces around it rise, flange where they fall and the
     rim of the part is beside it, island where they fall, step otherwise. A face beside the rim that only hollow radii
     join, as a leg of a V, is a wall."""
-    around = set().union(*(shape.neighbours[tag] for tag in group)) & set(roles) - group
+    around = rises(shape, group, set(roles), up)
     at_rim = outer is not None and bool(group & set(outer.faces))
     area = sum(shape.areas[tag] for tag in group)
-    height = sum(shape.areas[tag] * roles[tag].height for tag in group) / area
-    rise = [roles[tag].height - height for tag in around]
-    if not rise or min(rise) > 0:
+    if not around or min(around.values()) > 0:
         return "floor"
-    if max(rise) < 0:
+    if max(around.values()) < 0:
         hollow = all(roles[tag].name == "bottom radius" for tag in around)
         return ("wall" if hollow else "flange") if at_rim else "island"
     return "floor" if area > 0.5 * sum(shape.areas[tag] for tag in roles) else "step"
+
+
+def rises(shape: Shape, group: set[int], faces: set[int], up: np.ndarray) -> dict[int, float]:
+    """Return by how much the centroids of the faces beside a group are above their edges with it, mm: the mean height
+    of these, whose pieces are cubics with tangents across the normals at their ends."""
+    own = shape.of(sorted(group))
+    cell, side = np.nonzero(shape.piece_of[own] >= 0)
+    piece, following = shape.piece_of[own[cell], side], (side + 1) % 3
+    ends = shape.nodes[np.stack([shape.triangles[own[cell], side], shape.triangles[own[cell], following]])]
+    chord = ends[1] - ends[0]
+    bent = [-(chord * normal).sum(axis=1) * (normal @ up) for normal in
+            (shape.corner_normal[own[cell], side], shape.corner_normal[own[cell], following])]
+    height = ends.mean(axis=0) @ up + (bent[0] - bent[1]) / 12
+    length = np.linalg.norm(chord, axis=1)
+    found: dict[int, float] = {}
+    for tag in sorted(set().union(*(shape.neighbours[tag] for tag in group)) & faces - group):
+        beside = np.isin(piece, shape.piece_of[shape.cells[tag]])
+        edge = float(length[beside] @ height[beside]) / max(float(length[beside].sum()), 1e-300)
+        found[tag] = float(shape.centres[tag] @ up) - edge
+    return found
 
 
 def inner_and_outer_radius(shape: Shape, sides: tuple[list[int], list[int]]

@@ -213,7 +213,10 @@ def read_upper(reading: Reading, direction: Direction) -> None:
 
 
 def tell_undercut(reading: Reading) -> None:
-    """Enter why the part cannot be drawn from its direction."""
+    """Enter why the part cannot be drawn from its direction; of a part whose faces are damaged or not joined it is not
+    known."""
+    if any(fault.edges for fault in reading.faults):
+        return
     direction, other = reading.direction, reading.best
     assert direction and other
     if reading.flat:

@@ -143,7 +143,7 @@ def take(reading: Reading) -> Direction:
     also where the part is refused."""
     old, chosen = reading.direction, reading.best
     assert old and chosen
-    reading.faults = []
+    reading.faults = [fault for fault in reading.faults if fault.edges]  # of the CAD, not of a direction
     reading.directions = [one for one in reading.directions if one is not old]
     chosen = next((one for one in reading.directions if one.free and one.vector @ old.vector < -PARALLEL), chosen)
     read_upper(reading, chosen)

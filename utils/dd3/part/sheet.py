@@ -18,6 +18,8 @@ RAYS, FEWEST = 2000, 6
 OPPOSITE, EQUAL, MEMBER = -0.9, 0.02, 0.25
 # Fraction of a face that has to face another one to be across from it; least fraction of the area on one side.
 SHARED, ONE_SIDED = 0.15, 0.2
+# Thickness over that of the sheet up to which a face at another thickness may be of a side.
+THICKER = 2.0
 # Distance over the size of the part behind which a ray begins.
 LEAST = 1e-4
 # Of a sheet: least fraction of the area of its sides, of that at one thickness of the sides, and largest thickness over
@@ -53,6 +55,8 @@ def apart(shape: Shape, rays: Rays) -> float | None:
         hits = rays.hits(chosen, sign * shape.normal[chosen], LEAST * shape.size)
         faces = (shape.normal[chosen] * hits.normal).sum(axis=1) < OPPOSITE
         distance = most_common(hits.distance[faces], weight[faces])
+        if not np.isfinite(distance):
+            continue
         at = faces & (np.abs(hits.distance - distance) <= EQUAL * distance)
         if weight[at].sum() > SHEET * weight.sum() and distance < THICKEST * np.sqrt(weight.sum() / 2):
             return distance
@@ -88,7 +92,8 @@ def read_sheet(shape: Shape, rays: Rays) -> Sheet:
     if weight[at][curvature * thickness < ROUND].sum() > weight[at].sum() / 2:  # a bar
         return Sheet("block", sides=(shape.tags, []))
     sides = mostly(shape, chosen, weight, at)
-    sides = [tag for tag in sides if tag not in through_thickness(shape, here, there)]
+    across = through_thickness(shape, here, there)
+    sides = [tag for tag in sides if tag not in across]
     area = sum(shape.areas[tag] for tag in sides)
     if area < SHEET * sum(shape.areas.values()) or thickness > THICKEST * np.sqrt(area / 2):
         return Sheet("block", sides=(shape.tags, []))
@@ -97,10 +102,25 @@ def read_sheet(shape: Shape, rays: Rays) -> Sheet:
     fraction = float(weight[equal & of_sides].sum() / weight[of_sides].sum())
     if fraction < UNIFORM:
         return Sheet("block", sides=(shape.tags, []))
-    first, second = two_sides(shape, sides, here, there, weight[at])
+    near = mostly(shape, chosen, weight, distance <= THICKER * thickness)
+    joined = joined_to(shape, sides, set(near) - set(sides) - across, here, there)
+    first, second = two_sides(shape, sides + joined, here, there, weight[at])
     if min(sum(shape.areas[tag] for tag in side) for side in (first, second)) < ONE_SIDED * area:
         return Sheet("block", sides=(shape.tags, []), walls=thickness)
-    return Sheet("sheet", thickness, fraction, (first, second), [tag for tag in shape.tags if tag not in sides])
+    return Sheet("sheet", thickness, fraction, (first, second),
+                 [tag for tag in shape.tags if tag not in sides and tag not in joined])
+
+
+def joined_to(shape: Shape, sides: list[int], others: set[int], here: np.ndarray, there: np.ndarray) -> list[int]:
+    """Return those of other faces, at another thickness, that join faces of one side only, such as fillets whose radii
+    do not differ by the thickness, and walls that are thinned. Groups of them that join two faces which face each
+    other, `here` and `there` by samples, are rims."""
+    facing, found = set(zip(here.tolist(), there.tolist())), list[int]()
+    for group in shape.components(others):
+        beside = set().union(*(shape.neighbours[tag] for tag in group)) & set(sides)
+        if beside and not any((a, b) in facing for a in beside for b in beside):
+            found += sorted(group)
+    return found
 
 
 def through_thickness(shape: Shape, here: np.ndarray, there: np.ndarray) -> set[int]:
@@ -149,12 +169,14 @@ def two_sides(shape: Shape, faces: list[int], here: np.ndarray, there: np.ndarra
 
 
 def is_flat(shape: Shape, sheet: Sheet) -> bool:
-    """Tell whether nothing is formed: a sheet or surface with one normal on a side; the other may have countersinks."""
-    return sheet.kind != "block" and any(has_one_normal(shape, side) for side in sheet.sides if side)
+    """Tell whether nothing is formed: a sheet or surface with one side in a plane; the other may have countersinks."""
+    return sheet.kind != "block" and any(is_plane(shape, side) for side in sheet.sides if side)
 
 
-def has_one_normal(shape: Shape, side: list[int]) -> bool:
-    """Tell whether the normals of a side are one."""
+def is_plane(shape: Shape, side: list[int]) -> bool:
+    """Tell whether the normals of a side are one and its faces in one plane."""
     chosen = shape.of(side)
     mean = shape.normal[chosen[shape.area[chosen].argmax()]]
-    return bool(((shape.normal[chosen] @ mean) > np.cos(np.radians(FLAT))).all())
+    level = shape.place[chosen] @ mean
+    return bool(((shape.normal[chosen] @ mean) > np.cos(np.radians(FLAT))).all()
+                and np.ptp(level) < np.sin(np.radians(FLAT)) * shape.size)

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """CAD files (STEP, IGES, BREP) as Bézier patches, through Gmsh's Python package."""
-from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +23,7 @@ from dd3.tools.cad_file import (
     single,
 )
 from dd3.tools.cad_mesh import Model, mesh_within, middle_normals, normals
-from dd3.tools.cut import cut, is_closed, planes_through, planes_through_pole
+from dd3.tools.cut import cut, is_closed, of_axes, planes_through, planes_through_pole
 from dd3.tools.limits import limited
 from dd3.tools.report import named
 from dd3.tools.settings import CAD, ToolSettings
@@ -96,8 +95,9 @@ def read_cad(gmsh: Any, path: Path, options: ToolSettings, progress: Progress) -
     around = {tag: planes for tag in model.tags if (planes := planes_through_pole(gmsh, tag))}
     closed = [tag for tag in model.tags if tag not in around and is_closed(gmsh, tag)]
     if around or closed:
+        low, high = np.reshape(gmsh.model.getBoundingBox(-1, -1), (2, 3))
         through = [*around.values(), *(planes_through(gmsh, tag) for tag in closed)]
-        cut_closed(gmsh, path, model, [*around, *closed], list(chain.from_iterable(through)))
+        cut_closed(gmsh, path, model, [*around, *closed], of_axes(through, float(np.linalg.norm(high - low))))
     mesh_within(gmsh, path, model, tolerance, getattr(options, "longest", np.inf), progress)
     return model
 

@@ -83,8 +83,8 @@ def free_edges(gmsh: Any) -> list[int]:
 
 
 def find_gaps(gmsh: Any) -> list[tuple[float, int, int]]:
-    """Return the pairs of free edges that run beside each other, with the largest distance of the first one from the
-    second, mm, the widest gap last."""
+    """Return each free edge beside which another one runs, with the nearest one and its largest distance from that, mm,
+    the widest gap last."""
     single = free_edges(gmsh)
     fine = []
     for tag in single:
@@ -93,10 +93,10 @@ def find_gaps(gmsh: Any) -> list[tuple[float, int, int]]:
     found = []
     for i, (tag, points) in enumerate(zip(single, fine)):
         limit = min(REACH, gmsh.model.occ.getMass(1, tag) / 4)
-        for j, other in enumerate(fine):
-            gap = max(to_chords(point, other) for point in points[16:49:16]) if j != i else np.inf
-            if gap <= limit:
-                found.append((float(gap), tag, single[j]))
+        gaps = [max(to_chords(point, other) for point in points[16:49:16]) if j != i else np.inf
+                for j, other in enumerate(fine)]
+        if gaps and min(gaps) <= limit:
+            found.append((float(min(gaps)), tag, single[int(np.argmin(gaps))]))
     return sorted(found, key=lambda pair: pair[0])
 
 

@@ -11,6 +11,8 @@ from dd3.tools.parameters import length_of, pole_parameters
 SAME_PLANE = 0.02
 # Points of a circle that give its plane.
 CIRCLE_POINTS = 16
+# Distance of a plane edge from its plane over its size.
+PLANE_EDGE = 1e-6
 
 
 def is_closed(gmsh: Any, tag: int) -> bool:
@@ -47,9 +49,38 @@ def planes_through_pole(gmsh: Any, tag: int) -> list[tuple[np.ndarray, np.ndarra
 
 
 def planes_through(gmsh: Any, tag: int) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return two planes as (point, normal) through the middle of the box of a face along its shortest side."""
+    """Return two planes as (point, normal) through the axis of a face around which it closes, one of them through the
+    vertex of a closed edge, where the seam is; where no closed edge is plane, through the middle of the box of the face
+    along its shortest side."""
+    for _, edge in gmsh.model.getBoundary([(2, tag)], combined=False, oriented=False):
+        ends = {point for _, point in gmsh.model.getBoundary([(1, edge)], combined=False)}
+        if len(ends) != 1 or not length_of(gmsh, edge):
+            continue
+        low, high = (bound[0] for bound in gmsh.model.getParametrizationBounds(1, edge))
+        points = np.reshape(gmsh.model.getValue(1, edge, np.linspace(low, high, CIRCLE_POINTS + 1)), (-1, 3))
+        centre, start = points[:-1].mean(axis=0), points[0]
+        axis = np.cross(points[:-1] - centre, points[1:] - centre).sum(axis=0)
+        axis /= max(float(np.linalg.norm(axis)), 1e-300)
+        size = float(np.ptp(points, axis=0).max())
+        if axis.any() and np.abs((points - centre) @ axis).max() < PLANE_EDGE * size:
+            first = np.cross(axis, start - centre)
+            first /= np.linalg.norm(first)
+            return [(centre, first), (centre, np.cross(axis, first))]
     low, high = np.reshape(gmsh.model.getBoundingBox(2, tag), (2, 3))
     return [((low + high) / 2, np.eye(3)[axis]) for axis in range(3) if axis != int(np.argmin(high - low))]
+
+
+def of_axes(planes: list[list[tuple[np.ndarray, np.ndarray]]], size: float) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Return the planes of faces, each two through an axis, (point, normal), those of the first one only of faces with
+    the same axis."""
+    kept: list[list[tuple[np.ndarray, np.ndarray]]] = []
+    for pair in planes:
+        (point, first), (_, second) = pair
+        axis = np.cross(first, second)
+        if not any(abs(axis @ np.cross(one[1], two[1])) > 1 - SAME_PLANE**2
+                   and np.linalg.norm(np.cross(axis, point - one[0])) < SAME_PLANE * size for one, two in kept):
+            kept.append(pair)
+    return [plane for pair in kept for plane in pair]
 
 
 def different(planes: list[tuple[np.ndarray, np.ndarray]], size: float) -> list[tuple[np.ndarray, np.ndarray]]:

@@ -32,6 +32,8 @@ INSET = 2.0
 # Kink at joints of the die face above which the rims are divided further, degrees; least part of the length at once,
 # and a margin of it.
 KINK, FEWER, SAFE = 0.5, 0.2, 0.9
+# Cosine between the directions at the ends of an open rim below which it goes around the part.
+AROUND = 0.3
 # Points of a quadratic piece from which its length is taken.
 FINE = 33
 # Rounds in which the height of a binder settles.
@@ -247,12 +249,29 @@ def consistent(surface: Surface) -> Surface:
 
 def width_of(reach: Reach, border: np.ndarray, inset: float) -> float:
     """Return the width beside an open rim that reaches beyond the border of the blank (n, 2) by some length, mm."""
-    start, end = reach.curve[0, :2], reach.curve[-1, :2]
-    ends = reach.rim.out[[0, -1], :2]
+    curve, ends = reach.curve[:, :2], reach.rim.out[[0, -1], :2]
+    if goes_around(reach):
+        along, across = axes_of(curve)
+        beside = [(border @ axis).max() - (curve @ axis).max() for axis in (along, -along, across)]
+        return float(max(beside)) + inset
+    start, end = curve[0], curve[-1]
     across = np.array([end[1] - start[1], start[0] - end[0]])
     across *= np.sign(across @ ends.sum(axis=0)) / np.linalg.norm(across)
-    away = max(float(((border - start) @ across).max()), float(((reach.curve[:, :2] - start) @ across).max()))
+    away = max(float(((border - start) @ across).max()), float(((curve - start) @ across).max()))
     return (away + inset) / max(float((ends @ across).min()), 0.5)
+
+
+def goes_around(reach: Reach) -> bool:
+    """Tell whether a rim turns around the part: its ends lead in different directions."""
+    return not reach.rim.closed and float(reach.rim.out[0, :2] @ reach.rim.out[-1, :2]) < AROUND
+
+
+def axes_of(curve: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the direction from the start to the end of a curve in plan (n, 2), and the one across it to the side on
+    which the curve is."""
+    along = (curve[-1] - curve[0]) / np.linalg.norm(curve[-1] - curve[0])
+    across = np.array([-along[1], along[0]])
+    return along, across * np.sign(float(((curve - curve[0]) @ across).sum()) or 1.0)
 
 
 def flange(gmsh: Any, face: Face, curves: list[np.ndarray], tolerance: float) -> np.ndarray:
@@ -294,8 +313,17 @@ def even(curve: np.ndarray) -> np.ndarray:
 
 
 def strip(reach: Reach, curve: np.ndarray) -> list[Side]:
-    """Return the strip in plan from a curve to the border of the die beside an open rim."""
+    """Return the strip in plan from a curve to the border of the die beside an open rim: a straight line, or where the
+    rim goes around the part three sides of a rectangle."""
     start, end = curve[0, :2], curve[-1, :2]
     far_start, far_end = (own + ((place + reach.width * out - own) @ out) * out for own, place, out in (
         (start, reach.curve[0, :2], reach.rim.out[0, :2]), (end, reach.curve[-1, :2], reach.rim.out[-1, :2])))
-    return [Side(curve[:, :2], True), straight(end, far_end), straight(far_end, far_start), straight(far_start, start)]
+    corners = [far_end, far_start]
+    if goes_around(reach):
+        along, across = axes_of(reach.curve[:, :2])
+        places = [reach.curve[:, :2] @ axis for axis in (along, across)]
+        far = places[1].max() + reach.width
+        corners[1:1] = [max(far_end @ along, places[0].max() + reach.width) * along + far * across,
+                        min(far_start @ along, places[0].min() - reach.width) * along + far * across]
+    sides = [straight(a, b) for a, b in zip([end, *corners], [*corners, start])]
+    return [Side(curve[:, :2], True), *sides]

@@ -13,6 +13,8 @@ from dd3.tools.surface import Surface, from_nodes, points_at
 
 # Angle from the horizontal above which a surface climbs at its edge, degrees.
 CLIMB = 10.0
+# The same of a surface beside a flange, whose rails may climb at their ends.
+CLIMB_BESIDE_FLANGE = 30.0
 # Angle of a patch across a shoulder, degrees, at most.
 TURN = 22.5
 # Turn of a rim at a node above which it has a corner there, degrees.
@@ -38,13 +40,15 @@ class Rim:
 
 def find_rims(surface: Surface, joints: Joints, border: np.ndarray | None = None) -> tuple[list[Rim], int]:
     """Return the rims of a surface whose normals point to the side that its walls enclose, and the number of its other
-    free edges. The walls climb along z. Free edges of a border, where a flange joins the surface, are no rims."""
+    free edges. The walls climb along z. Free edges of a border, where a flange joins the surface, are no rims, nor are
+    others that climb by less than CLIMB_BESIDE_FLANGE if there is a border."""
     edge = joints.free if border is None else np.setdiff1d(joints.free, border)
     points, normals = along_edges(surface, edge)
     # At the middle, the direction in which the surface would go on.
     along = points[:, 2] - points[:, 0]
     onward = np.cross(along, normals[:, 1])
-    climbing = onward[:, 2] > np.sin(np.radians(CLIMB)) * np.linalg.norm(onward, axis=1)
+    least = CLIMB if border is None or not len(border) else CLIMB_BESIDE_FLANGE
+    climbing = onward[:, 2] > np.sin(np.radians(least)) * np.linalg.norm(onward, axis=1)
     return (lined(points[climbing], normals[climbing], 1e-6 * joints.size), int((~climbing).sum()))
 
 

@@ -17,7 +17,7 @@ from dd3.errors import Problem
 from dd3.progress import doing
 from dd3.tools import cad, cad_mesh, drawability, no_holder, own_flange, report, sides, trim_deck
 from dd3.tools.binder import NoBinder
-from dd3.tools.die_face import INSET, Face, Reach, TooLong, consistent, estimated, even, flange, with_face
+from dd3.tools.die_face import INSET, Face, Reach, TooLong, consistent, estimated, even, flange, goes_around, with_face
 from dd3.tools.faces import spans
 from dd3.tools.joints import box_of, find_joints
 from dd3.tools.limits import started
@@ -186,7 +186,7 @@ def made(gmsh: Any, options: ToolSettings, progress: Any) -> ToolSet:
         result.lines.append(("floor", f"not held: the rims of its walls are at two heights, so that one wall is formed "
                              f"alone over {free:.3g} mm of the stroke, and may draw the sheet along the punch by up to "
                              "that; compare the middle of the sheet after the draw, and give the blank that margin"))
-    if not pad or any(reach.own for reach in face.reaches):
+    if not pad or any(reach.own or goes_around(reach) for reach in face.reaches):
         holder = holder_of(gmsh, face, curves, options)
         binder = face.binders[0]
         if len(face.binders) == 1 and binder.plane and (slope := binder.gradient(np.zeros(2))).any():
