@@ -13,8 +13,8 @@ from helpers import call
 from vtk.util.numpy_support import vtk_to_numpy
 
 from dd3.bound import bound_nodes, closed_skin
-from dd3.compensate import lower_face
 from dd3.fields import Fields
+from dd3.fixture_target import lower_face
 from dd3.forming_limit import strains_of
 from dd3.mesh import read_run
 from dd3.nominal import conforming, continued

@@ -12,8 +12,10 @@ import pyvista as pv
 from helpers import call
 
 import dd3
-from dd3.compensate import (
-    aligned,
+from dd3.curve import read_curves
+from dd3.fixture_target import aligned
+from dd3.gmsh_session import session
+from dd3.moved_tools import (
     along_sheet,
     divisions,
     moved_surface,
@@ -21,8 +23,6 @@ from dd3.compensate import (
     smooth_field,
     write_step,
 )
-from dd3.curve import read_curves
-from dd3.gmsh_session import session
 from dd3.nominal import continued
 from dd3.outline import Outline, Rim, excess, moved
 from dd3.tools.surface import read_patches, write

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Press: the crank against its geometry, force and energy of made-up runs in closed form."""
 
+import json
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -19,6 +21,71 @@ def history(folder, force):
     folder.mkdir()
     pd.DataFrame(columns).to_csv(folder / "history.csv", index=False)
     return folder
+
+
+def with_cam(folder, theta, force=300.0, across=0.0, aside=0.0, start=70.0):
+    """Write a run in which a ram moves down by 50 mm from a position, after an increment in which it stands, and drives
+    a cam along x by a face at an angle theta, rad, to its path; the sheet resists the ram with 1000 N, and the cam with
+    a force that grows with its path, N for 1 mm; across presses it on its slide, aside along y."""
+    travel = np.concatenate(([0.0], np.linspace(0, 50, 101)))
+    path = np.tan(theta) * travel
+    columns = {"phase": ["lay", *["bend"] * 101], "travel": travel}
+    for name, u, f in (("ram", (0, 0, start - travel), (0, 0, 1000)), ("cam", (path, 0, 0), (-force * path, aside, -across)),
+                       ("post", (0, 0, 0), (0, 0, 0))):
+        columns |= {f"{name}_{kind}{axis}": value for kind, values in (("u", u), ("f", f))
+                    for axis, value in zip("xyz", values)}
+        columns[f"{name}_contacts"] = 1
+    folder.mkdir()
+    pd.DataFrame(columns).to_csv(folder / "history.csv", index=False)
+    tools = [{"name": name, "motion": motion, "displacement": move} for name, motion, move in
+             (("ram", "moved", [0, 0, -50]), ("cam", "moved", [path[-1], 0, 0]), ("post", "held", [0, 0, 0]))]
+    (folder / "run.json").write_text(json.dumps({
+        "format": "dd3imp run", "format_version": 2, "program": {"name": "dd3imp", "version": "1"}, "title": "",
+        "phases": [{"name": "bend", "tools": tools}]}))
+    return folder
+
+
+def course_of(run, *words):
+    """Return the course of a run with the options given."""
+    call("press", run, *words)
+    return pd.read_csv(run / "press" / "press.csv")
+
+
+def test_cam(tmp_path) -> None:
+    """The ram bears the force of its own tool and that of the cam by their paths, its energy is the work of both; the
+    position of the ram in the input file, here above its place at the end, does not matter."""
+    theta = np.radians(35)
+    course = course_of(with_cam(tmp_path / "run", theta))
+    cam = 300 * np.tan(theta) * (50 - course["height"])  # N
+    assert np.allclose(course["force_ram"][1:], 1.0)
+    assert np.allclose(course["force_cam"][2:], cam[2:] * np.tan(theta) / 1000) and course["force_cam"][0] == 0
+    assert np.allclose(course["force"], course["force_ram"] + course["force_cam"])
+    work = 1000 * 50 + 300 * (50 * np.tan(theta))**2 / 2
+    assert course["energy"].iloc[-1] == pytest.approx(work / 1e6)
+    alone = course_of(tmp_path / "run", "--cams")
+    assert list(alone) == ["height", "force", "energy"] and alone["energy"].iloc[-1] == pytest.approx(0.05)
+    assert "no tool 'die'" in call("press", tmp_path / "run", "--cams", "die", expect=2)
+
+
+def test_friction_of_a_cam(tmp_path) -> None:
+    """A wedge with the friction angle phi on its slide and on the face that drives it: P = F cos(phi) sin(theta + phi) /
+    cos(theta + 2 phi); what presses the cam on its slide, from either side, adds its friction; it locks at 90 degrees."""
+    theta, phi = np.radians(35), np.arctan(0.1)
+    course = course_of(with_cam(tmp_path / "run", theta), "--cam-friction", "0.1")
+    cam = 300 * np.tan(theta) * (50 - course["height"]) / 1000
+    factor = np.cos(phi) * np.sin(theta + phi) / np.cos(theta + 2 * phi)
+    assert factor > 1.3 * np.tan(theta) and np.allclose(course["force_cam"][2:], cam[2:] * factor)
+    for name, across, aside in (("down", 400, 300), ("up", -20000, 0)):
+        run = with_cam(tmp_path / name, theta, across=across, aside=aside)
+        found = course_of(run, "--cam-friction", "0.1")["force_cam"]
+        if across > 0:  # on the slide, which bears the face too
+            expected = (cam + 0.1 * 0.7) * factor
+        else:  # the slide holds it down: its normal force has the other sign
+            expected = (cam + 0.1 * 20) * np.sin(theta + phi) / np.cos(theta) * np.cos(phi)
+        assert np.allclose(found[2:], expected[2:]), name
+    steep = with_cam(tmp_path / "steep", np.radians(80))
+    assert "the slide of 'cam' locks" in call("press", steep, "--cam-friction", "0.1", expect=2)
+    assert "--cam-friction is 0 or more" in call("press", steep, "--cam-friction", "-1", expect=2)
 
 
 def test_crank() -> None:

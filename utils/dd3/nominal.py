@@ -40,11 +40,12 @@ def read_surface(path: Path) -> Any:
     return surface_of(made(ToolSettings(path))[0].net)
 
 
-def sheet_surface(sheet: Sheet, step: int, beyond: float = 0.0, upper: bool = False) -> Any:
+def sheet_surface(sheet: Sheet, step: int, beyond: float = 0.0, upper: bool = False, places: np.ndarray | None = None
+                  ) -> Any:
     """Return a face of a sheet at a step as a surface of pyvista, curved between the nodes, its normals away from the
-    sheet, and continued beyond its border by a length."""
+    sheet, and continued beyond its border by a length. places: of all nodes, where they are others, mm."""
     nodes, corner = np.unique(sheet.faces(upper, step), return_inverse=True)
-    points, quads = sheet.points(step)[nodes], corner.reshape(-1, 4)
+    points, quads = (sheet.points(step) if places is None else places)[nodes], corner.reshape(-1, 4)
     place = {int(node): i for i, node in enumerate(nodes)}
     bound = {(place[a], place[b]): place[node] for (a, b), node in sheet.bound(step).items() if node in place}
     if beyond:

@@ -3,14 +3,19 @@
 
     dd3 press cup.out --ram punch --mirror x y
     dd3 press cup.out --ram die --whole 2 --stroke 400 --rod 1500 --force 2500 --rated 6.5 --energy 40 --verdict
+    dd3 press flange.out --ram steel --mirror y --cam-friction 0.1
     dd3 press --stroke 400 --rod 1500 --table 60 --points 12 --rate 20
 
 --ram names the tools on the ram, by default the one that controls the last phase with a controlling tool; their forces
-against its motion are added. The stroke ends at its largest displacement, the bottom dead centre. With --stroke (twice
-the radius of the crank, mm) and --rod (length of the connecting rod, mm) the table has the angle of the crank before
-the bottom dead centre; with --force (kN) and --rated (height above the bottom dead centre at which the press has this
-force, mm) the force that its torque allows at each height, and with --energy (kJ) the energy of a stroke is compared.
---verdict ends with exit code 1 if one is exceeded. press.csv and press.png are written into RUN/press.
+against its motion are added. Other tools that the input file moves while the ram moves are driven by it: cams, whose
+forces count with their path over that of the ram (virtual work). --cam-friction is the friction of a cam on its slide
+and on the inclined face that drives it; --cams names those that the ram drives, if it does not drive all.
+
+The stroke ends at the largest displacement of the ram, the bottom dead centre. With --stroke (twice the radius of the
+crank, mm) and --rod (length of the connecting rod, mm) the table has the angle of the crank before the bottom dead
+centre; with --force (kN) and --rated (height above the bottom dead centre at which the press has this force, mm) the
+force that its torque allows at each height, and with --energy (kJ) the energy of a stroke is compared. --verdict ends
+with exit code 1 if one is exceeded. press.csv and press.png are written into RUN/press.
 
 --table prints the last --table mm of the stroke as move_table of a phase with control = load, with its duration at
 --rate strokes per minute.
@@ -30,10 +35,12 @@ from dd3.errors import Problem
 from dd3.plot.figures import new_figure, save
 from dd3.plot.force import controlling_tool, main_phase, vector
 from dd3.programs import made_folder
-from dd3.run import read_frame
+from dd3.run import read_frame, read_job
 from dd3.tables import tools_in
 
 HALVINGS = 60  # of the angle, which leave less than the round-off
+STILL = 1e-9  # path of an increment, over that of the ram, below which a tool does not move
+ALONG = 1e-6  # sine of the angle between the paths of ram and tool below which this is not a wedge
 
 
 @dataclass(frozen=True)
@@ -69,22 +76,92 @@ class Crank:
         return np.asarray(np.minimum(force, torque / np.maximum(slope, torque / force)))
 
 
-def ram_course(history: pd.DataFrame, tools: Sequence[str], whole: int) -> pd.DataFrame:
-    """Return the course of the ram down to the bottom dead centre: height above it, mm, force, kN, energy, kJ. whole:
-    number of images of the model."""
-    unknown = [tool for tool in tools if tool not in tools_in(history)]
-    if unknown:
-        raise Problem(f"no tool '{unknown[0]}'; there are: {', '.join(tools_in(history))}")
+def ram_course(history: pd.DataFrame, tools: Sequence[str], whole: int, cams: Sequence[str] = (),
+               friction: float = 0.0) -> pd.DataFrame:
+    """Return the course of the ram down to the bottom dead centre: height above it, mm, force, kN, energy, kJ, and the
+    force of each tool on the ram, kN. whole: number of images of the model. cams: tools that the ram drives, with a
+    friction of their slides."""
     path = vector(history, tools[0], "u")
+    path -= path[0]  # the displacement begins at the position of the input file
     last = int(np.linalg.norm(path, axis=1).argmax())
     if not last:
         raise Problem(f"the tool '{tools[0]}' does not move; expected one on the ram")
     direction = path[last] / np.linalg.norm(path[last])
     travel = path[:last + 1] @ direction
-    # The force of the sheet on a tool is against the motion.
-    force = -whole * sum(vector(history, tool, "f")[:last + 1] @ direction for tool in tools) / 1000
-    energy = np.concatenate(([0.0], np.cumsum((force[1:] + force[:-1]) / 2 * np.diff(travel)))) / 1000
-    return pd.DataFrame({"height": travel[-1] - travel, "force": force, "energy": energy})
+    steps = np.diff(travel)
+    # At the end and at the beginning of each increment; the force of the sheet on a tool is against the motion.
+    ends = np.s_[1:last + 1], np.s_[:last]
+    both = {tool: np.stack([-vector(history, tool, "f")[rows] @ direction for rows in ends]) for tool in tools}
+    for cam in cams:
+        paths, forces = np.diff(vector(history, cam, "u")[:last + 1], axis=0), vector(history, cam, "f")
+        both[cam] = np.stack([driven(cam, paths, forces[rows], steps, direction, friction) for rows in ends])
+    shares = {tool: whole * np.insert(end, 0, begin[0]) / 1000 for tool, (end, begin) in both.items()}
+    work = whole * sum(end + begin for end, begin in both.values()) / 2 * steps
+    course = pd.DataFrame({"height": travel[-1] - travel, "force": sum(shares.values()),
+                           "energy": np.concatenate(([0.0], np.cumsum(work))) / 1e6})
+    if len(shares) > 1:
+        course = course.assign(**{f"force_{tool}": share for tool, share in shares.items()})
+    return course
+
+
+def driven(name: str, paths: np.ndarray, forces: np.ndarray, steps: np.ndarray, ram: np.ndarray, friction: float
+           ) -> np.ndarray:
+    """Return the forces (n) with which a cam loads the ram in increments, N: by the paths of the cam (n, 3) and the ram
+    (n), the forces of the sheet on the cam (n, 3) and the direction of the ram.
+
+    The ram pushes the cam by a plane face. This slides on the cam, so that it is along the relative motion; with the
+    friction and the normal force of the slide, which is across the path of the cam, two equations in the plane of both
+    paths have the forces of the face and of the slide. A force across this plane is taken by the sides of the slide.
+    """
+    found = np.zeros(len(steps))
+    moves = np.linalg.norm(paths, axis=1) > STILL * np.abs(steps).max()
+    for i in np.flatnonzero(moves & (steps > STILL * np.abs(steps).max())):
+        along = paths[i] / np.linalg.norm(paths[i])
+        ratio = np.linalg.norm(paths[i]) / steps[i]
+        across = ram - (ram @ along) * along
+        sine = np.linalg.norm(across)
+        resisting = -forces[i] @ along
+        if not friction or sine < ALONG:
+            if friction and abs(ratio * (ram @ along) - 1) > ALONG:
+                raise Problem(f"--cam-friction: the tool '{name}' moves along the ram, by {ratio:.4g} mm for 1 mm of "
+                              "it; expected a cam at an angle to it")
+            found[i] = resisting * ratio
+            continue
+        across /= sine
+        tangent = ram - ratio * along
+        tangent /= np.linalg.norm(tangent)
+        normal = np.array([tangent @ across, -(tangent @ along)])  # in the plane: along and across
+        normal *= np.sign(normal[0])
+        push = normal + friction * np.array([tangent @ along, tangent @ across])
+        aside = forces[i] @ np.cross(along, across)
+        found[i] = slide(name, push, resisting, -forces[i] @ across, friction, abs(aside)) * (
+            push @ np.array([ram @ along, ram @ across]))
+    return found
+
+
+def slide(name: str, push: np.ndarray, resisting: float, across: float, friction: float, aside: float) -> float:
+    """Return the normal force of the face that pushes a cam, N: push is the force of the face over it, along and across
+    the path; resisting, across: forces that the cam exerts on the sheet; aside: on the sides of the slide."""
+    for sign in (1.0, -1.0):  # of the normal force of the slide on the cam
+        # push n = (resisting + friction (sign g + aside), across - g)
+        matrix = np.array([[push[0], -sign * friction], [push[1], 1.0]])
+        if np.linalg.det(matrix) <= 0:
+            continue
+        normal, guide = np.linalg.solve(matrix, [resisting + friction * aside, across])
+        if sign * guide >= 0:
+            return float(normal)
+    raise Problem(f"--cam-friction: the slide of '{name}' locks with a friction of {friction:g}")
+
+
+def cams_of(run: Path, history: pd.DataFrame, tools: Sequence[str]) -> list[str]:
+    """Return the tools beside those on the ram that are moved in phases in which the ram moves."""
+    moving = np.flatnonzero(np.abs(np.diff(vector(history, tools[0], "u"), axis=0)).max(axis=1) > 0) + 1
+    names = set(history["phase"].to_numpy(str)[moving])
+    if not (run / "run.json").is_file():
+        return []
+    moved = {tool["name"] for phase in read_job(run)["phases"] if phase["name"] in names
+             for tool in phase["tools"] if tool["motion"] == "moved" and any(tool["displacement"] or ())}
+    return [tool for tool in tools_in(history) if tool in moved and tool not in tools]
 
 
 def compared(course: pd.DataFrame, crank: Crank | None, options: argparse.Namespace) -> list[str]:
@@ -139,6 +216,10 @@ def options_of(words: Sequence[str] | None) -> argparse.Namespace:
     parser = new_parser("press", __doc__)
     parser.add_argument("run", type=Path, nargs="?", metavar="RUN", help="folder of results")
     parser.add_argument("--ram", nargs="+", default=[], metavar="TOOL", help="tools on the ram")
+    parser.add_argument("--cams", nargs="*", metavar="TOOL",
+                        help="tools that the ram drives (default: all that are moved while it moves)")
+    parser.add_argument("--cam-friction", type=float, default=0.0, metavar="MU",
+                        help="friction of the cams on their slides and on the faces that drive them (0)")
     parser.add_argument("--mirror", nargs="+", default=[], choices=["x", "y", "z"], metavar="AXIS",
                         help="planes of symmetry, for the forces of the whole")
     parser.add_argument("--whole", type=int, default=1, metavar="N", help="times that the forces are multiplied by (1)")
@@ -154,6 +235,8 @@ def options_of(words: Sequence[str] | None) -> argparse.Namespace:
     given = [options.stroke, options.rod, options.force, options.energy, options.rated, options.table, options.rate]
     if any(value is not None and not value > 0 for value in given) or options.points < 2 or options.whole < 1:
         parser.error("numbers of the press are positive, --points 2 or more")
+    if options.cam_friction < 0 or set(options.cams or ()) & set(options.ram):
+        parser.error("--cam-friction is 0 or more, --cams are other tools than --ram")
     if (options.stroke is None) != (options.rod is None) or (options.force is None) != (options.rated is None):
         parser.error("--stroke goes with --rod, --force with --rated")
     if options.stroke and options.rod <= options.stroke / 2:
@@ -176,12 +259,18 @@ def main(words: Sequence[str] | None = None) -> None:
         return
     history = read_frame(options.run, "history.csv", "phase", "travel")
     tools = options.ram or [controlling_tool(history, [main_phase(history)])]
-    course = ram_course(history, tools, options.whole * 2**len(set(options.mirror)))
+    for tool in [*tools, *(options.cams or ())]:
+        if tool not in tools_in(history):
+            raise Problem(f"no tool '{tool}'; there are: {', '.join(tools_in(history))}")
+    cams = cams_of(options.run, history, tools) if options.cams is None else options.cams
+    course = ram_course(history, tools, options.whole * 2**len(set(options.mirror)), cams, options.cam_friction)
     over = compared(course, crank, options)
     folder = made_folder(options.run / "press")
     course.to_csv(folder / "press.csv", index=False, float_format="%.7g")
     draw(course, folder / "press.png")
-    print(f"ram with {', '.join(tools)}: largest force {course['force'].max():.4g} kN, energy "
+    for cam in cams:
+        print(f"cam {cam}: largest force on the ram {course[f'force_{cam}'].max():.4g} kN")
+    print(f"ram with {', '.join([*tools, *cams])}: largest force {course['force'].max():.4g} kN, energy "
           f"{course['energy'].iloc[-1]:.4g} kJ over {course['height'].iloc[0]:.4g} mm", folder, sep="\n")
     if options.verdict and over:
         sys.exit(1)

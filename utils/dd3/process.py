@@ -239,9 +239,10 @@ def process_parser(name: str, text: str | None) -> argparse.ArgumentParser:
     return parser
 
 
-def write_deviations(path: Path, names: str, found: Sequence[tuple[float, float]], first: int) -> None:
+def write_deviations(path: Path, names: str, found: Sequence[Sequence[float]], first: int) -> None:
     """Write a table of deviations by the number of the loop, from `first` on."""
-    rows = [names, *(f"{number},{a:.6g},{b:.6g}" for number, (a, b) in enumerate(found, first))]
+    rows = [names, *(",".join([str(number), *(f"{value:.6g}" for value in row)])
+                     for number, row in enumerate(found, first))]
     path.write_text("\n".join(rows) + "\n", encoding="utf-8")
 
 
