@@ -32,6 +32,9 @@ MOST_FAILURES = 3
 MOST_PATCHES = 2000
 # Kink inside a face above which it is divided further, degrees, in this many rounds.
 KINK, KINK_ROUNDS = 0.5, 2
+# Distance of nodes from a face over the tolerance above which its kinks are those of a gap that was sewn, which are the
+# larger the shorter the patches.
+OF_GAP = 0.25
 # Processor time after which Gmsh is given up, s: a mesh of all faces.
 MESH_TIME = 300.0
 # Part of a patch's largest area of a parameter square below which it has no normal.
@@ -237,6 +240,7 @@ def mesh_within(gmsh: Any, path: Path, model: Model, tolerance: float, longest: 
         progress((rounds + 1) / MOST_ROUNDS)
         if not failed:
             kink, bent = faults(gmsh, model, rounds)
+            kink[division.gap > OF_GAP * tolerance] = 0.0
             score = (len(bent), (model.distance > tolerance).sum(), (kink > KINK).any(axis=1).sum())
             if best is None or score < best[0]:
                 best = score, model.nodes, model.uv, model.labels, model.face, model.distance
@@ -267,6 +271,7 @@ def mesh_once(gmsh: Any, path: Path, model: Model, division: Division) -> list[A
             distance = distances(gmsh, model, from_nodes(model.nodes), known=division.measured)
             model.distance = by_face(model, distance.max(axis=1))
             division.distance = directional(model, distance)
+            division.gap = by_face(model, distance.reshape(-1, 5, 5)[:, ::2, ::2].max(axis=(1, 2)))
     return failed
 
 

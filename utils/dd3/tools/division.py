@@ -44,6 +44,7 @@ class Division:
         self.divided: defaultdict[Any, int] = defaultdict(int)
         self.stagnant: defaultdict[Any, int] = defaultdict(int)
         self.distance = np.zeros((len(tags), 2))  # the distances of the faces along their first and second edges, mm
+        self.gap = np.zeros(len(tags))  # the largest distances of nodes from the faces, mm
         # Patches of the faces as they were measured last, and their distances.
         self.measured: dict[int, tuple[np.ndarray, np.ndarray]] = {}
         self.bent: defaultdict[Any, int] = defaultdict(int)
