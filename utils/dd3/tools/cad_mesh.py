@@ -200,8 +200,8 @@ def worst_kinks(model: Model, net: np.ndarray) -> np.ndarray:
     return by_direction(model, in_u, in_v)
 
 
-def directions(gmsh: Any, model: Model, regular: set[int], loops: dict[int, list[int]]) -> np.ndarray:
-    """Return for each patch 0 if its u runs along the first and third edge of its face, 1 if along the others, -1 if
+def directions(gmsh: Any, model: Model, regular: set[int], sides: dict[int, list[list[int]]]) -> np.ndarray:
+    """Return for each patch 0 if its u runs along the first and third side of its face, 1 if along the others, -1 if
     the face has no regular mesh.
 
     Opposite edges of patches form strips, which end at the edges of the face that they are parallel to.
@@ -221,8 +221,8 @@ def directions(gmsh: Any, model: Model, regular: set[int], loops: dict[int, list
             continue
         chosen = np.flatnonzero(face == index)
         for position in (0, 1):
-            nodes = np.concatenate([gmsh.model.mesh.getNodes(1, abs(loops[tag][k]), includeBoundary=True)[0]
-                                    for k in (position, position + 2)])
+            nodes = np.concatenate([gmsh.model.mesh.getNodes(1, edge, includeBoundary=True)[0]
+                                    for k in (position, position + 2) for edge in sides[tag][k]])
             on_edge = chosen[np.isin(ends[chosen], nodes).all(axis=1)]
             found = np.isin(group[strip[chosen]], group[strip[on_edge]])
             along[strip[chosen[found]] // 2] = np.where(strip[chosen[found]] % 2 == 0, position, 1 - position)
@@ -267,7 +267,7 @@ def mesh_once(gmsh: Any, path: Path, model: Model, division: Division) -> list[A
         failed = division.mesh(gmsh)
         if not failed:
             collect(gmsh, model)
-            model.along = directions(gmsh, model, division.regular, division.loops)
+            model.along = directions(gmsh, model, division.regular, division.sides)
             distance = distances(gmsh, model, from_nodes(model.nodes), known=division.measured)
             model.distance = by_face(model, distance.max(axis=1))
             division.distance = directional(model, distance)
