@@ -2,6 +2,8 @@
 """Parts with holes, notches and lanced forms: their closed sides and their tools against those of the same part made
 without any."""
 
+from itertools import pairwise
+
 import gmsh
 import numpy as np
 import part_set
@@ -21,6 +23,7 @@ from dd3.part.table import summary
 from dd3.tools.cad_file import silence
 from dd3.tools.cad_mesh import Model, overlapping
 from dd3.tools.cut import is_closed, of_axes, planes_through
+from dd3.tools.division import Division
 from dd3.tools.patch_distance import Distance
 
 
@@ -199,6 +202,24 @@ def test_turned_cuts():
     for pair in planes:
         assert max(max(abs(normal @ axis), abs((place - point) @ normal)) for point, normal in pair) < 1e-9
     assert min(abs((seam - point) @ normal) for point, normal in planes[0]) < 1e-9
+
+
+def test_divided_sides():
+    """Check that a curved face whose opposite sides have two edges each, which go on smoothly, has a regular mesh, but
+    not if they are divided at other places or one of them alone."""
+    with session() as gmsh:
+        for second, whole in ((60.0, True), (120.0, False), (None, False)):
+            gmsh.clear()
+            lines = []
+            for x, row in ((0, [30, 60, 150]), (40, [30, *([second] if second else []), 150])):
+                points = [gmsh.model.occ.addPoint(x, *(10 * np.array([np.cos(a), np.sin(a)]))) for a in np.radians(row)]
+                middle = gmsh.model.occ.addPoint(x, 0, 0)
+                lines.append((points, [gmsh.model.occ.addCircleArc(a, middle, b) for a, b in pairwise(points)]))
+            (low, near), (high, far) = lines
+            ends = [gmsh.model.occ.addLine(low[i], high[i]) for i in (0, -1)]
+            gmsh.model.occ.addSurfaceFilling(gmsh.model.occ.addWire([*near, ends[1], *far[::-1], ends[0]]))
+            gmsh.model.occ.synchronize()
+            assert bool(Division(gmsh, [gmsh.model.getEntities(2)[0][1]]).regular) == whole, second
 
 
 def test_overlapping():

@@ -32,6 +32,9 @@ MOST_FAILURES = 3
 MOST_PATCHES = 2000
 # Kink inside a face above which it is divided further, degrees, in this many rounds.
 KINK, KINK_ROUNDS = 0.5, 2
+# Distance of nodes from a face over the tolerance above which its kinks are those of a gap that was sewn, which are the
+# larger the shorter the patches.
+OF_GAP = 0.25
 # Processor time after which Gmsh is given up, s: a mesh of all faces.
 MESH_TIME = 300.0
 # Part of a patch's largest area of a parameter square below which it has no normal.
@@ -197,8 +200,8 @@ def worst_kinks(model: Model, net: np.ndarray) -> np.ndarray:
     return by_direction(model, in_u, in_v)
 
 
-def directions(gmsh: Any, model: Model, regular: set[int], loops: dict[int, list[int]]) -> np.ndarray:
-    """Return for each patch 0 if its u runs along the first and third edge of its face, 1 if along the others, -1 if
+def directions(gmsh: Any, model: Model, regular: set[int], sides: dict[int, list[list[int]]]) -> np.ndarray:
+    """Return for each patch 0 if its u runs along the first and third side of its face, 1 if along the others, -1 if
     the face has no regular mesh.
 
     Opposite edges of patches form strips, which end at the edges of the face that they are parallel to.
@@ -218,8 +221,8 @@ def directions(gmsh: Any, model: Model, regular: set[int], loops: dict[int, list
             continue
         chosen = np.flatnonzero(face == index)
         for position in (0, 1):
-            nodes = np.concatenate([gmsh.model.mesh.getNodes(1, abs(loops[tag][k]), includeBoundary=True)[0]
-                                    for k in (position, position + 2)])
+            nodes = np.concatenate([gmsh.model.mesh.getNodes(1, edge, includeBoundary=True)[0]
+                                    for k in (position, position + 2) for edge in sides[tag][k]])
             on_edge = chosen[np.isin(ends[chosen], nodes).all(axis=1)]
             found = np.isin(group[strip[chosen]], group[strip[on_edge]])
             along[strip[chosen[found]] // 2] = np.where(strip[chosen[found]] % 2 == 0, position, 1 - position)
@@ -237,6 +240,7 @@ def mesh_within(gmsh: Any, path: Path, model: Model, tolerance: float, longest: 
         progress((rounds + 1) / MOST_ROUNDS)
         if not failed:
             kink, bent = faults(gmsh, model, rounds)
+            kink[division.gap > OF_GAP * tolerance] = 0.0
             score = (len(bent), (model.distance > tolerance).sum(), (kink > KINK).any(axis=1).sum())
             if best is None or score < best[0]:
                 best = score, model.nodes, model.uv, model.labels, model.face, model.distance
@@ -263,10 +267,11 @@ def mesh_once(gmsh: Any, path: Path, model: Model, division: Division) -> list[A
         failed = division.mesh(gmsh)
         if not failed:
             collect(gmsh, model)
-            model.along = directions(gmsh, model, division.regular, division.loops)
+            model.along = directions(gmsh, model, division.regular, division.sides)
             distance = distances(gmsh, model, from_nodes(model.nodes), known=division.measured)
             model.distance = by_face(model, distance.max(axis=1))
             division.distance = directional(model, distance)
+            division.gap = by_face(model, distance.reshape(-1, 5, 5)[:, ::2, ::2].max(axis=(1, 2)))
     return failed
 
 

@@ -17,6 +17,10 @@ CORNERS = 25.0, 155.0
 # Fraction of its last value that the distance of a divided face must fall below; divisions without that before it is
 # given up: rounded up, the division of one edge of a face may stay the same.
 STAGNANT, MOST_STAGNANT = 0.8, 2
+# Edges of a face with a regular mesh at most.
+MOST_EDGES = 8
+# Difference between the places where opposite sides are divided, over their lengths, at most.
+UNLIKE = 0.2
 # Rounds with folded patches after which a face has no regular mesh.
 MOST_BENT = 4
 # Points at which an edge is examined.
@@ -44,6 +48,7 @@ class Division:
         self.divided: defaultdict[Any, int] = defaultdict(int)
         self.stagnant: defaultdict[Any, int] = defaultdict(int)
         self.distance = np.zeros((len(tags), 2))  # the distances of the faces along their first and second edges, mm
+        self.gap = np.zeros(len(tags))  # the largest distances of nodes from the faces, mm
         # Patches of the faces as they were measured last, and their distances.
         self.measured: dict[int, tuple[np.ndarray, np.ndarray]] = {}
         self.bent: defaultdict[Any, int] = defaultdict(int)
@@ -55,8 +60,12 @@ class Division:
         low, high = np.reshape(gmsh.model.getBoundingBox(-1, -1), (2, 3))
         self.size = float(np.linalg.norm(high - low))
         self.length = {edge: length_of(gmsh, edge) for edge, _ in self.turn}
-        self.corners = {tag: self.corners_of(gmsh, loop) for tag, loop in self.loops.items()}
-        self.regular = {tag for tag, corners in self.corners.items() if corners}
+        self.sides: dict[int, list[list[int]]] = {}
+        self.corners: dict[int, list[int]] = {}
+        for tag, loop in self.loops.items():
+            flat = gmsh.model.getType(2, tag) == "Plane" and len(loop) > 4
+            self.sides[tag], self.corners[tag] = ([], []) if flat else self.sides_of(gmsh, loop)
+        self.regular = {tag for tag, sides in self.sides.items() if sides}
         self.curved = {tag: gmsh.model.getType(2, tag) != "Plane" for tag in tags}
 
     @staticmethod
@@ -79,23 +88,44 @@ class Division:
             normal = np.zeros((1, 3))
         return max(turning(tangent), turning(normal))
 
-    def corners_of(self, gmsh: Any, loop: list[int]) -> list[int]:
-        """Return the corners of a face with a regular mesh: of four different edges, or of three that end at a pole,
-        an edge without length, which is the first corner. They meet at clear angles; else there are no corners."""
+    def sides_of(self, gmsh: Any, loop: list[int]) -> tuple[list[list[int]], list[int]]:
+        """Return the four sides of a face with a regular mesh, each of one edge or of several that go on smoothly, and
+        its corners: they meet at clear angles, and opposite sides have the same number of edges. A face of three edges
+        that end at a pole, an edge without length, has this as a side and three corners, the first one at the pole.
+        Other faces have no sides and corners."""
         lengths = [self.length[abs(edge)] > 1e-9 * self.size for edge in loop]
-        if len(loop) != 4 or len(set(map(abs, loop))) != 4 or sum(lengths) < 3:
-            return []
+        if len(set(map(abs, loop))) != len(loop) or not 4 <= len(loop) <= MOST_EDGES or sum(lengths) < 3 or \
+                not (all(lengths) or len(loop) == 4):
+            return [], []
         first = 0 if all(lengths) else lengths.index(False) + 1
         edges = [edge for edge in loop[first:] + loop[:first] if lengths[loop.index(edge)]]
         ends = [self.ends_of(gmsh, edge) for edge in edges]
         size = max(np.linalg.norm(point[1] - point[0]) for point, _ in ends)
-        for (point, along), (point_next, along_next) in zip(ends, ends[1:] + ends[:1]):
+        clear = []  # at the start of each edge
+        for (point, along), (point_next, along_next) in zip(ends[-1:] + ends[:-1], ends):
             a, b = -along[1], along_next[0]
             scale = np.linalg.norm(a) * np.linalg.norm(b)
-            if np.linalg.norm(point[1] - point_next[0]) > 1e-4 * size or scale == 0.0 or \
-                    not CORNERS[0] < np.degrees(np.arccos(np.clip(a @ b / scale, -1, 1))) < CORNERS[1]:
-                return []
-        return [gmsh.model.getBoundary([(1, edge)], combined=False)[0][1] for edge in edges]
+            if np.linalg.norm(point[1] - point_next[0]) > 1e-4 * size or scale == 0.0:
+                return [], []
+            angle = np.degrees(np.arccos(np.clip(a @ b / scale, -1, 1)))
+            if angle <= CORNERS[0] or (angle >= CORNERS[1] and len(loop) == 4):
+                return [], []
+            clear.append(angle < CORNERS[1])
+        starts = [gmsh.model.getBoundary([(1, edge)], combined=False)[0][1] for edge in edges]
+        if len(loop) == 4:
+            return [[abs(edge)] for edge in loop], starts
+        if sum(clear) != 4:
+            return [], []
+        turn = clear.index(True)
+        sides: list[list[int]] = []
+        for edge, corner in zip(edges[turn:] + edges[:turn], clear[turn:] + clear[:turn]):
+            sides = [*sides, []] if corner else sides
+            sides[-1].append(abs(edge))
+        for one, other in zip(sides[:2], sides[2:]):
+            parts = [np.cumsum([self.length[edge] for edge in side]) for side in (one, other[::-1])]
+            if len(one) != len(other) or np.abs(np.subtract(*(part / part[-1] for part in parts))).max() > UNLIKE:
+                return [], []
+        return sides, [start for start, corner in zip(starts, clear) if corner]
 
     @staticmethod
     def ends_of(gmsh: Any, edge: int) -> tuple[np.ndarray, np.ndarray]:
@@ -137,18 +167,18 @@ class Division:
             return edge
 
         for tag in self.regular:
-            a, b, c, d = (abs(edge) for edge in self.loops[tag])
             # At a pole the edge without length and the one opposite are not alike.
-            group[leader(a)] = leader(c)
-            group[leader(b)] = leader(d)
+            for one, other in zip(self.sides[tag][:2], self.sides[tag][2:]):
+                for a, b in zip(one, reversed(other)):
+                    group[leader(a)] = leader(b)
         largest: defaultdict[Any, int] = defaultdict(int)
         for edge in group:
             largest[leader(edge)] = max(largest[leader(edge)], need.get(edge, 1))
         return {edge: largest[leader(edge)] for edge in group}
 
     def direction(self, edge: int, tag: int) -> int:
-        """Return 0 for the first and third edge of a face, 1 for the second and fourth."""
-        return [abs(other) for other in self.loops[tag]].index(edge) % 2
+        """Return 0 for the first and third side of a face with a regular mesh, 1 for the second and fourth."""
+        return next(number for number, side in enumerate(self.sides[tag]) if edge in side) % 2
 
     def mesh(self, gmsh: Any) -> list[Any]:
         """Make the mesh of second order; return the faces where that failed, divided further for another try."""
@@ -179,7 +209,8 @@ class Division:
                 gmsh.model.mesh.setTransfiniteCurve(edge, count + 1)
         for tag in self.regular:
             corners = self.corners[tag]
-            gmsh.model.mesh.setTransfiniteSurface(tag, cornerTags=corners if len(corners) == 3 else [])
+            whole = all(len(side) == 1 for side in self.sides[tag]) and len(corners) == 4
+            gmsh.model.mesh.setTransfiniteSurface(tag, cornerTags=[] if whole else corners)
 
     def refine(self, distance: np.ndarray, kink: np.ndarray, folded: set[int]) -> bool:
         """Raise the factors of faces whose relative distance or kink (face, direction) exceeds 1, or that have folded

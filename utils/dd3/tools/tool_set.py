@@ -22,6 +22,7 @@ from dd3.tools.faces import spans
 from dd3.tools.joints import box_of, find_joints
 from dd3.tools.limits import started
 from dd3.tools.moved import placed, rotation
+from dd3.tools.nagata import groups
 from dd3.tools.offset import at_distance
 from dd3.tools.pad_force import Pin, Pull, pins
 from dd3.tools.rims import Rim, border_rims, find_rims, lengths, patches, wall
@@ -94,6 +95,7 @@ def both_sides(gmsh: Any, options: ToolSettings, progress: Any
                       "patches do not lie upon each other: divide or mend them in the CAD program, or choose faces by "
                       "--faces")
     surface = cad.surface_of(model)
+    refuse_apart(surface, options)
     matrix = rotation(options.rotate)
     up = matrix.T @ -DOWN
     sign, kept, _, notes, _, twisted = sides.faced(surface, find_joints(surface.net), up, cad.outward(gmsh, model))
@@ -131,6 +133,18 @@ def refuse_left_out(model: cad_mesh.Model, options: ToolSettings) -> None:
                       "they do not join the others smoothly. If the block is a tool: "
                       f"dd3 tool {options.source} tool.bez --toward {options.seen} makes it of all faces. If it has "
                       f"the shape of a part: --faces {both} takes them too, or choose those that one tool touches")
+
+
+def refuse_apart(surface: Surface, options: ToolSettings) -> None:
+    """Refuse a side, not chosen by the user, in parts that are not joined."""
+    joints = find_joints(surface.net)
+    part = groups(len(surface.net), joints.first // 4, joints.second // 4)
+    if options.faces or part.max() == 0:
+        return
+    named = [report.named(surface, np.unique(surface.face[part == one])) for one in np.unique(part)]
+    raise Problem(f"{options.source}: the faces of the side that the tools touch are in {len(named)} parts, which are "
+                  f"not joined: {named[0]}; {named[1]}. Join them in the CAD program, or choose those of one part by "
+                  "--faces")
 
 
 def made(gmsh: Any, options: ToolSettings, progress: Any) -> ToolSet:
