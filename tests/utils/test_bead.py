@@ -103,7 +103,7 @@ def test_path(height):
     strip = Strip(Material(STEEL), bead, 0.0, 16, 20)
     strip.flow()
     path = strip.path(strip.unknowns)
-    assert np.abs(path.residual).max() < 1e-6
+    assert np.abs(path.residual).max() < 1e-4
     for i, span in enumerate(path.spans):
         start = np.array(strip.place(i, path.leaving[i]))
         end = np.array(strip.place(i + 1, path.coming[i + 1]) if i < 2 else (strip.unknowns[5], bead.gap))

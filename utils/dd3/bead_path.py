@@ -26,14 +26,14 @@ from dd3.errors import Problem
 from dd3.laws import Material
 
 CLEARANCE, GAP = 1.2, 0.1  # over the thickness, of a bead for which they are not given
-LAYERS, STEPS = 16, 20  # through the thickness; to a bend
+LAYERS, STEPS, COARSE = 16, 20, (8, 10)  # through the thickness; to a bend; both before the bead is closed
 PULLS = 4  # steps of the friction at a contact
 PASSES, SAME, ZERO = 30, 2e-3, 5e-4  # largest number of passes; change of the forces at the last one, of it over uplift
 SIDES = 1, -1, 1  # of the tools: 1 below the sheet, -1 above
 START = -0.8, -0.7, -0.7, 0.0, -0.1, 6.0  # unknowns of a low bead: see Strip.unknowns; the last over the thickness
 LOWEST, WIDEST, FARTHEST = -0.995, 2.5, 80.0  # bounds of the unknowns; the last over the thickness
 SCALES = 0.1, 0.1, 0.1, 0.05, 0.05, 1.0
-FOUND = 1e-7  # largest residual of the path, radian
+FOUND = 1e-4  # largest residual of the path, radian
 EVALUATIONS, SHORTEST = 60, 0.05  # of the path; step of the height over the thickness
 NEAR, HALF = 0.5, 0.5  # thicknesses before a tool within which it presses; relaxation of the pressure
 LEAST = 1e-9  # moment, N
@@ -142,10 +142,10 @@ class Strip:
         """Return the curvature of the sheet at a tool, 1/mm."""
         return (1 + min(float(self.unknowns[i]), 0.0)) / self.radii[i]
 
-    def bend(self) -> None:
+    def bend(self, layers: int, steps: int) -> None:
         """Bend a section along the path: moments over the curvatures, tensions behind the tools."""
         bead = self.bead
-        self.section = section = Section(self.material, bead.thickness, self.layers, self.direction)
+        self.section = section = Section(self.material, bead.thickness, layers, self.direction)
         self.start, last = 2 * bead.friction * bead.clamping, 0.0
         if self.start:
             section.pull(self.start, PULLS)
@@ -154,12 +154,12 @@ class Strip:
         for i, side in enumerate((*SIDES, 0)):
             record = [np.array([[last], [section.moment]])]
             if last:
-                moments = section.bend(0.0, self.steps)
-                record.append(np.array([last * (1 - parts(self.steps)), moments])[:, 1:])
+                moments = section.bend(0.0, steps)
+                record.append(np.array([last * (1 - parts(steps)), moments])[:, 1:])
             if side:
                 last = side * self.curvature(i)
-                moments = section.bend(last, self.steps, self.presses[i] / bead.thickness, self.beyond[i])
-                record.append(np.array([last * parts(self.steps), moments])[:, 1:])
+                moments = section.bend(last, steps, self.presses[i] / bead.thickness, self.beyond[i])
+                record.append(np.array([last * parts(steps), moments])[:, 1:])
                 self.rub(i)
                 self.tensions.append(section.force - section.moment * last)
             records.append(np.hstack(record))
@@ -178,7 +178,7 @@ class Strip:
         lifted from the plate, mm, and the curvature near the shoulder: the moment rises in proportion to the
         distance."""
         moment = -self.rise.moment(-curvature)
-        part = np.linspace(0.0, 1.0, 4 * self.steps + 1)
+        part = np.linspace(0.0, 1.0, NODES + 1)
         bent = np.interp(part * moment, -self.rise.moments[::-1], -self.rise.curvatures[::-1])
         turn, fall = (float((values[1:] + values[:-1]).sum()) / 2 * float(part[1]) for values in
                       (bent, bent * (1 - part)))
@@ -222,27 +222,33 @@ class Strip:
         self.unknowns, self.offsets = before
         return None
 
-    def close(self) -> Path:
-        """Return the path at the height of the bead, from a low one on with the moments of the last pass."""
-        step, path = self.bead.thickness, None
-        while self.height < self.bead.height or path is None:
+    def close(self) -> None:
+        """Find a path at the height of the bead, from a low one on, with the moments of coarse passes."""
+        step = self.bead.thickness
+        while self.height < self.bead.height:
+            self.bend(*COARSE)
             reached = self.height
-            self.height = min(self.bead.height, reached + step)
-            path = self.solve()
-            if path is None:
-                self.height, step = reached, step / 2
+            while True:
+                self.height = min(self.bead.height, reached + step)
+                if path := self.solve():
+                    break
+                step /= 2
                 if step < SHORTEST * self.bead.thickness:
                     raise Problem(f"the path of the sheet is not found beyond a height of the bead of {reached:.3g} mm")
-        return path
+            self.forces(path)
 
     def flow(self) -> Result:
         """Make a pass: bend the section along the path, find the next path and the forces."""
-        self.bend()
-        path = self.solve() if self.height else None
+        if not self.height:
+            self.close()
+        self.bend(self.layers, self.steps)
+        path = self.solve()
         if path is None:
-            self.height, self.unknowns = 0.0, np.array([*START[:5], self.bead.half + START[5] * self.bead.thickness])
-            self.offsets = [np.zeros(NODES + 1) for _ in SIDES]
-            path = self.close()
+            raise Problem(f"the path of the sheet is not found at a height of the bead of {self.height:.3g} mm")
+        return self.forces(path)
+
+    def forces(self, path: Path) -> Result:
+        """Return what the bead does on a path, and take the forces on the tools for the next pass."""
         bead, section, forces = self.bead, self.section, [span.force for span in path.spans]
         entry = -self.rise.moment(-path.curvatures[0]) / path.lifted
         last = abs(section.moment)

@@ -21,6 +21,7 @@ from scipy.linalg import solve_banded
 NODES = 60  # parts of a free part
 ITERATIONS, SOLVED = 40, 1e-10  # of Newton's method; last change of the offset, mm
 LARGEST = 0.5  # change of the offset in an iteration, mm
+SMALLEST = 2.0**-6  # part of a change, halved until less is left of the equation
 FLATTEST = 1e-3  # least slope of the moment over the curvature, over the elastic stiffness
 
 
@@ -109,15 +110,26 @@ def free_span(start: Start, end: tuple[float, float], last: float, branch: Branc
                             [side * rise, start.tension])
     pull = side * (force[0] * math.cos(chord) - force[1] * math.sin(chord))
     places, size = np.linspace(0.0, length, len(offsets)), length / (len(offsets) - 1)
-    straight, offsets = start.moment + rise * places, offsets.copy()
+    straight = start.moment + rise * places
+
+    def state(at: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        curvatures, slopes = bent.at(straight + pull * at)
+        return *newton(at, side * curvatures, side * pull * slopes, size), curvatures
+
+    excess, change, curvatures = state(offsets)
     for _ in range(ITERATIONS):
-        curvatures, slopes = bent.at(straight + pull * offsets)
-        change = newton(offsets, side * curvatures, side * pull * slopes, size)
-        largest = float(np.abs(change).max())
-        offsets[1:-1] += change * min(1.0, LARGEST / max(largest, SOLVED))
-        if largest <= SOLVED:
+        part = min(1.0, LARGEST / max(float(np.abs(change).max()), SOLVED))
+        while True:
+            trial = offsets.copy()
+            trial[1:-1] += part * change
+            found = state(trial)
+            if np.linalg.norm(found[0]) < np.linalg.norm(excess) or part < SMALLEST:
+                break
+            part /= 2
+        offsets, done = trial, float(np.abs(change).max()) <= SOLVED
+        excess, change, curvatures = found
+        if done:
             break
-    curvatures = bent.at(straight + pull * offsets)[0]
     inner = np.diff(offsets) / size
     bends = side * curvatures * (1 + np.gradient(offsets, size)**2)**1.5
     ends = (inner[0] - size / 6 * (2 * bends[0] + bends[1]), inner[-1] + size / 6 * (2 * bends[-1] + bends[-2]))
@@ -128,8 +140,10 @@ def free_span(start: Start, end: tuple[float, float], last: float, branch: Branc
                 abs(float(force[0] * math.sin(second) + force[1] * math.cos(second))), offsets)
 
 
-def newton(offsets: np.ndarray, curvatures: np.ndarray, derivatives: np.ndarray, size: float) -> np.ndarray:
-    """Return Newton's change of the inner offsets; derivatives: of curvatures by offsets; size: of a part, mm."""
+def newton(offsets: np.ndarray, curvatures: np.ndarray, derivatives: np.ndarray,
+           size: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return what is left of the equation and Newton's change of the inner offsets; derivatives: of curvatures by
+    offsets; size: of a part, mm."""
     slope = (offsets[2:] - offsets[:-2]) / (2 * size)
     factor = (1 + slope**2)**1.5
     excess = (offsets[2:] - 2 * offsets[1:-1] + offsets[:-2]) / size**2 - curvatures[1:-1] * factor
@@ -138,4 +152,4 @@ def newton(offsets: np.ndarray, curvatures: np.ndarray, derivatives: np.ndarray,
     bands[0, 1:] = (1 / size**2 - turn)[:-1]
     bands[1] = -2 / size**2 - derivatives[1:-1] * factor
     bands[2, :-1] = (1 / size**2 + turn)[1:]
-    return np.asarray(solve_banded((1, 1), bands, -excess))
+    return excess, np.asarray(solve_banded((1, 1), bands, -excess))
