@@ -9,7 +9,7 @@ import matplotlib.image
 import numpy as np
 import pytest
 from helpers import ROOT, call
-from part_set import PARTS, block, edges, outline, polygon, write
+from part_set import PARTS, block, edges, outline, polygon, strip, write
 from scipy.spatial.transform import Rotation
 
 from dd3.gmsh_session import session
@@ -220,6 +220,25 @@ def test_equal_fillets(tmp_path):
     reading = read_made(tmp_path, pan)
     assert [len(side) for side in reading.sheet.sides] == [5, 5] and len(reading.sheet.rims) == 1
     assert "flange" in {role.name for role in reading.roles.values()} and not reading.holes
+
+
+def test_rounded_rims(tmp_path):
+    """Check that the roundings of the rims of a hat are rims, and that its sides are those of a sharp one."""
+    def hat(occ):
+        body = strip([(-45, 25), (-29, 25), (-25, 0), (25, 0), (29, 25), (45, 25)], 2, 4, 80)
+        rim = edges(lambda b: b[3] - b[0] > 79 and min(abs(b[1]), abs(b[4])) > 44.9)
+        occ.fillet([body[0][1]], rim, [0.95])
+
+    reading = read_made(tmp_path, hat)
+    assert [len(side) for side in reading.sheet.sides] == [9, 9] and len(reading.sheet.rims) == 8
+
+
+def test_corrugated(tmp_path):
+    """Check that the crests of a corrugated sheet between its flanges are islands."""
+    path = [(-60, 0), *((y + dy, z) for y in (-60, -22, 16) for dy, z in ((10, 0), (14, 8), (24, 8), (28, 0))), (60, 0)]
+    reading = read_made(tmp_path, lambda occ: strip(path, 0.7, 2, 80))
+    names = [role.name for role in reading.roles.values()]
+    assert reading.direction.words == "-z" and names.count("flange") == 2 and names.count("island") == 2, names
 
 
 def test_curved_flange(tmp_path):

@@ -73,7 +73,7 @@ def read_roles(shape: Shape, direction: Direction, outer: Loop | None) -> dict[i
 def level_name(shape: Shape, roles: dict[int, Role], group: set[int], outer: Loop | None, up: np.ndarray) -> str:
     """Return the name of connected level faces: floor where the faces around it rise, flange where they fall and the
     rim of the part is beside it, island where they fall, step otherwise. A face beside the rim that only hollow radii
-    join, as a leg of a V, is a wall."""
+    join, as a leg of a V, is a wall, and one between two parts of the rim, as the crest of a corrugation, an island."""
     around = rises(shape, group, set(roles), up)
     at_rim = outer is not None and bool(group & set(outer.faces))
     area = sum(shape.areas[tag] for tag in group)
@@ -81,7 +81,9 @@ def level_name(shape: Shape, roles: dict[int, Role], group: set[int], outer: Loo
         return "floor"
     if max(around.values()) < 0:
         hollow = all(roles[tag].name == "bottom radius" for tag in around)
-        return ("wall" if hollow else "flange") if at_rim else "island"
+        rest = shape.components(set(roles) - group) if outer is not None else []
+        between = sum(bool(part & set(outer.faces)) for part in rest) > 1 if outer is not None else False
+        return "island" if between or not at_rim else "wall" if hollow else "flange"
     return "floor" if area > 0.5 * sum(shape.areas[tag] for tag in roles) else "step"
 
 

@@ -112,13 +112,22 @@ def read_sheet(shape: Shape, rays: Rays) -> Sheet:
 
 
 def joined_to(shape: Shape, sides: list[int], others: set[int], here: np.ndarray, there: np.ndarray) -> list[int]:
-    """Return those of other faces, at another thickness, that join faces of one side only, such as fillets whose radii
-    do not differ by the thickness, and walls that are thinned. Groups of them that join two faces which face each
-    other, `here` and `there` by samples, are rims."""
+    """Return those of other faces, at another thickness, that are of one side of the sheet, such as fillets whose radii
+    do not differ by the thickness, and walls that are thinned: groups of them that join parts of the side, or go on
+    smoothly from several of its faces and to nothing else. Groups that join two faces which face each other, `here` and
+    `there` by samples, are rims."""
     facing, found = set(zip(here.tolist(), there.tolist())), list[int]()
+    part = {tag: number for number, group in enumerate(shape.components(sides)) for tag in group}
+    smooth: defaultdict[int, set[int]] = defaultdict(set)
+    for edge in shape.edges.values():
+        if len(edge.faces) == 2 and not edge.angle:
+            for tag in edge.faces:
+                smooth[tag] |= set(edge.faces)
     for group in shape.components(others):
         beside = set().union(*(shape.neighbours[tag] for tag in group)) & set(sides)
-        if beside and not any((a, b) in facing for a in beside for b in beside):
+        onward = set().union(*(smooth[tag] for tag in group)) - group
+        joins = len({part[tag] for tag in beside}) > 1 or (len(onward) > 1 and onward <= set(sides))
+        if joins and not any((a, b) in facing for a in beside for b in beside):
             found += sorted(group)
     return found
 
