@@ -150,7 +150,7 @@ contains
     end if
   end subroutine measure_column
 
-  !> Measure the displacement across the path of a node on a level face of the punch.
+  !> Measure the displacement across the path, in this job, of a node on a level face of the punch.
   pure subroutine measure_slide(self, model, state, path, node)
     type(punch_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -161,6 +161,7 @@ contains
     real(wp) :: vector(3)
 
     vector = state%x(:, node) - model%x0(:, node)
+    if (allocated(model%x_start)) vector = state%x(:, node) - model%x_start(:, node)
     vector = vector - dot_product(vector, path%direction)*path%direction
     if (self%slide%node > 0 .and. norm2(vector) >= self%slide%distance) return
     self%slide = new_place(state, node, norm2(vector), self%tool)

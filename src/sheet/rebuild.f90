@@ -161,16 +161,23 @@ contains
     type(mesh_t), intent(inout) :: mesh
 
     type(place_t) :: centre
+    integer, allocatable :: kept(:)
     integer :: e, k, q
 
     associate (grid => cut%grid, corner => cut%patch%corner)
+      kept = pack([(q, q=1, grid%n_quad)], cut%kept)
       mesh%n_element_node = 8
       mesh%n_element = grid%n_layer*size(corner, 2)
       allocate (mesh%connectivity(8, mesh%n_element), mesh%material(mesh%n_element))
       if (allocated(sheet%mesh%level)) allocate (mesh%level(mesh%n_element))
       do q = 1, size(corner, 2)
-        centre = locate(grid, cut%plane, 0.25_wp*sum(cut%patch%plane(:, corner(:, q)), dim=2), &
-            cut%grid%quad_at(grid%first(cut%source(corner(1, q)))))
+        ! The way of `locate` ends at edges with a bound column: those that stay are known.
+        if (q <= size(kept)) then
+          centre%quad = kept(q)
+        else
+          centre = locate(grid, cut%plane, 0.25_wp*sum(cut%patch%plane(:, corner(:, q)), dim=2), &
+              grid%quad_at(grid%first(cut%source(corner(1, q)))))
+        end if
         do k = 1, grid%n_layer
           e = element_number(cut, q, k)
           mesh%connectivity(:, e) = [node(k - 1, corner(:, q)), node(k, corner(:, q))]
