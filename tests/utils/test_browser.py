@@ -50,6 +50,8 @@ def shown(page, script):
 
 def test_step_and_tool(page):
     """Check that slider, field, tool and mesh lines change the picture, and come back."""
+    assert not page.locator("#tool_punch").is_checked()  # it would cover the part
+    page.locator("#tool_punch").check()
     first = shown(page, 'v.select("thinning"); v.state.step = 1')
     page.locator("#step").evaluate("slider => { slider.value = 0; return slider.oninput(); }")
     assert page.locator("#step_name").text_content().startswith("draw, travel")
