@@ -70,7 +70,8 @@ function newChart(canvas, x, y, { equal = false, tell = null, hover = null, lege
           display: legend,
           labels: {
             usePointStyle: true,
-            pointStyleWidth: 20,
+            pointStyleWidth: 13,
+            boxHeight: 9,
             filter: (item) => !item.text.startsWith("_"),
           },
         },

@@ -68,7 +68,7 @@ function drawLegend(maps, field, shown) {
     top = 62,
     height = canvas.height - top - 10;
   context.clearRect(0, 0, canvas.width, canvas.height);
-  context.fillStyle = "#ffffffcc";
+  context.fillStyle = "#ffffff";
   context.fillRect(0, 0, canvas.width, canvas.height);
   for (let i = 0; i < height; i++) {
     context.fillStyle = `rgb(${colourOf(maps, field, shown, 1 - (i + 0.5) / height)})`;
