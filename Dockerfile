@@ -17,8 +17,10 @@ RUN --mount=type=bind,from=build,source=/usr/local/src/dd3imp/dist,target=/dist 
     libxcursor1 libxft2 libxinerama1 libxrender1 \
   && python3 -m venv /opt/dd3 \
   && /opt/dd3/bin/pip install --no-cache-dir "$(echo /dist/*.whl)[$EXTRAS]" \
-  && rm -rf /var/lib/apt/lists/* \
-  && useradd --create-home dd3
+  && find /opt/dd3/lib -path "*/pandas/*" -name tests -prune -exec rm -r {} + \
+  && find /opt/dd3/lib -path "*/scipy/*" -name tests -prune -exec rm -r {} + \
+  && apt-get clean && rm -rf /var/lib/apt/lists/* \
+  && useradd --create-home dd3 && install --directory --owner dd3 --group dd3 /work
 
 ENV PATH=/opt/dd3/bin:$PATH OMP_WAIT_POLICY=passive MPLCONFIGDIR=/tmp
 USER dd3

@@ -50,6 +50,8 @@ def shown(page, script):
 
 def test_step_and_tool(page):
     """Check that slider, field, tool and mesh lines change the picture, and come back."""
+    assert not page.locator("#tool_punch").is_checked()  # it would cover the part
+    page.locator("#tool_punch").check()
     first = shown(page, 'v.select("thinning"); v.state.step = 1')
     page.locator("#step").evaluate("slider => { slider.value = 0; return slider.oninput(); }")
     assert page.locator("#step_name").text_content().startswith("draw, travel")
@@ -106,6 +108,9 @@ def test_section(page):
     assert height.min() > -0.01 and height.max() < 1.01
     assert page.locator("#profile_box").is_visible() and page.locator("#along_box").is_visible()
     assert "y = 6.00 mm" in page.locator("#offset_value").text_content()
+    page.locator("#offset").evaluate("slider => { slider.value = 500; slider.oninput(); }")  # the plane of symmetry
+    along = page.evaluate("window.viewer.section.along.data.datasets.map(({data}) => data.map(({x}) => x))")
+    assert len(along) == 1 and (np.diff(along[0]) >= 0).all() and abs(along[0][-1] - 81.18) < 0.1  # of the parabola
     page.locator("#cut").uncheck()
     assert not page.locator("#profile_box").is_visible()
 

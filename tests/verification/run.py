@@ -174,6 +174,15 @@ def figure(name, painters):
     plt.close(drawing)
 
 
+def set_ticks(axis):
+    """Label 1, 2 and 5, or 1 alone, of each decade of a logarithmic axis."""
+    from matplotlib.ticker import LogLocator, NullFormatter
+    low, high = axis.get_data_interval()
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < 100 * low else (1.0,)))
+    axis.set_major_formatter("{x:g}")
+    axis.set_minor_formatter(NullFormatter())
+
+
 def draw_study(axes, rows, column):
     """Draw the error of the rows of a study over the unknowns or seconds, by element."""
     for element in dict.fromkeys(row[0] for row in rows):
@@ -181,6 +190,8 @@ def draw_study(axes, rows, column):
         axes.loglog([float(row[STUDY_HEAD.index(column)]) for row in own],
                     [100 * max(abs(size(row[STUDY_HEAD.index("error")])), 1e-7) for row in own], "o-", linewidth=1.4,
                     markersize=4, label=element.strip("`"))
+    for axis in (axes.xaxis, axes.yaxis):
+        set_ticks(axis)
     axes.set_xlabel(column)
     if column == "unknowns":
         axes.set_ylabel("error (%)")

@@ -38,7 +38,7 @@ def add_verdict(report: Report) -> None:
     """Add what is good and what is not."""
     report.verdict = verdict.judge(report.job, report.waves, report.splits,
                                    [*verdict.sprung(report.sprung, report.tolerance), *report.deviations])
-    rows = "".join(f'<tr><th>{html.escape(item.name)}</th><td><span class="key" style="background:'
+    rows = "".join(f'<tr><th>{html.escape(item.name)}</th><td class="answer"><span class="key" style="background:'
                    f'{verdict.COLOURS[item.answer]}"></span>{item.answer}</td><td>{html.escape(item.text)}</td></tr>'
                    for item in report.verdict)
     said = verdict.summary(report.verdict)

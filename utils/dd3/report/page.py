@@ -25,7 +25,7 @@ STYLE = """body{font:16px/1.5 system-ui,sans-serif;color:#222;background:#f4f5f7
 main{max-width:1100px;margin:0 auto;padding:1em 1.5em}h1{margin:.4em 0 0}h2{margin:0 0 .5em;font-size:1.2em}
 section{background:#fff;border:1px solid #dde;border-radius:6px;padding:1em 1.2em;margin:1em 0}
 img{max-width:100%;height:auto;display:block;margin:auto}table{border-collapse:collapse}
-td,th{padding:.15em .9em .15em 0;text-align:left;vertical-align:top}td.n{text-align:right}
+td,th{padding:.15em .9em .15em 0;text-align:left;vertical-align:top}td.n{text-align:right}td.answer{white-space:nowrap}
 .row{display:flex;flex-wrap:wrap;gap:1em 3em}.bar{display:inline-block;height:.8em;background:#5b8fd6}
 .key{display:inline-block;width:.8em;height:.8em;margin-right:.4em}.warn{color:#8a4b00}
 pre{overflow-x:auto;font-size:13px}p,li{overflow-wrap:break-word}

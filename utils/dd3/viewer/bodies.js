@@ -109,11 +109,11 @@ async function openTool(tool, number, stage, bar, show) {
   return { ...tool, colour, objects, prints, box, skin, matrix: new library.Matrix4() };
 }
 
-// Add a check box for a tool.
+// Add a check box for a tool, which is hidden at first: it covers the part.
 function addBox(name, text, show) {
   const label = document.createElement("label");
   const box = document.createElement("input");
-  Object.assign(box, { type: "checkbox", checked: true, id: name, onchange: show });
+  Object.assign(box, { type: "checkbox", id: name, onchange: show });
   label.append(box, ` ${text}`);
   element("tools").append(label);
   return box;

@@ -66,7 +66,15 @@ function newChart(canvas, x, y, { equal = false, tell = null, hover = null, lege
       onHover: (_, found) => hover && hover(found[0]),
       plugins: {
         equalScales: { on: equal },
-        legend: { display: legend, labels: { boxWidth: 14, filter: (item) => !item.text.startsWith("_") } },
+        legend: {
+          display: legend,
+          labels: {
+            usePointStyle: true,
+            pointStyleWidth: 13,
+            boxHeight: 9,
+            filter: (item) => !item.text.startsWith("_"),
+          },
+        },
         tooltip: {
           callbacks: {
             label: (item) =>
@@ -87,6 +95,7 @@ const lineSet = (label, colour, data, width) => ({
   borderWidth: width,
   showLine: true,
   spanGaps: false,
+  pointStyle: "line",
   pointRadius: 0,
   pointHitRadius: 6,
 });

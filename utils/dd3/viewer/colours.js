@@ -39,6 +39,9 @@ function rangeOf(field, step) {
   return withTicks((element("range").value === "step" && field.scales[step]) || field.scale);
 }
 
+// Whether a range has values of both signs, which have diverging colours.
+const isSigned = ({ low, high }) => low < 0 && high > 0;
+
 // Return the colour at a part of the range, red, green and blue from 0 to 255; `maps`: those of the scene.
 function colourOf(maps, field, shown, part) {
   if (field.names) {
@@ -49,7 +52,7 @@ function colourOf(maps, field, shown, part) {
   let value = low + part * (high - low);
   if (limit !== null && value >= limit) return BEYOND;
   if (element("bands").checked) value = Math.min((Math.floor(value / shown.step) + 0.5) * shown.step, high);
-  const signed = low < 0 && high > 0,
+  const signed = isSigned(shown),
     largest = Math.max(-low, high),
     top = limit === null ? high : Math.min(high, limit);
   const map = maps[signed ? "diverging" : element("map").value];
@@ -65,7 +68,7 @@ function drawLegend(maps, field, shown) {
     top = 62,
     height = canvas.height - top - 10;
   context.clearRect(0, 0, canvas.width, canvas.height);
-  context.fillStyle = "#ffffffcc";
+  context.fillStyle = "#ffffff";
   context.fillRect(0, 0, canvas.width, canvas.height);
   for (let i = 0; i < height; i++) {
     context.fillStyle = `rgb(${colourOf(maps, field, shown, 1 - (i + 0.5) / height)})`;

@@ -33,7 +33,10 @@ class Section {
     const reach = [Math.min, Math.max].map((best) =>
       normal.reduce((sum, n, k) => sum + best(n * ends[0][k], n * ends[1][k]), 0),
     );
-    return { choice, normal, distance: reach[0] + ((reach[1] - reach[0]) * element("offset").value) / 1000 };
+    // A little beside the place, so that no nodes lie in the plane: in one of symmetry two images would be cut.
+    const part = element("offset").value / 1000,
+      beside = (part < 1 ? 1e-5 : -1e-5) * this.stage.size;
+    return { choice, normal, distance: reach[0] + (reach[1] - reach[0]) * part + beside };
   }
 
   // Cut the bodies where the controls say so, and draw the profile and the field.

@@ -165,7 +165,7 @@ class Stage {
     context.drawImage(this.renderer.domElement, 0, 0);
     const ratio = width / this.view.clientWidth;
     const legend = element("legend");
-    const place = [width - (legend.width + 4) * ratio, 10 * ratio, legend.width * ratio, legend.height * ratio];
+    const place = [width - legend.width * ratio, 10 * ratio, legend.width * ratio, legend.height * ratio];
     context.drawImage(legend, ...place);
     const link = document.createElement("a");
     link.download = "part.png";

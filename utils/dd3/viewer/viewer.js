@@ -119,6 +119,7 @@ class Viewer {
     this.coloured.color.set(values ? 0xffffff : 0xc8ccd0);
     if (!!this.coloured.map !== !!values)
       Object.assign(this.coloured, { map: values ? this.bar : null, needsUpdate: true });
+    element("map_label").hidden = !!field.names || isSigned(shown);
     drawLegend(this.scene.maps, field, shown);
   }
 
@@ -228,7 +229,10 @@ class Viewer {
       return this.show();
     };
     element("pressure").onchange = () => {
-      if (element("pressure").checked) this.select("contact_pressure");
+      if (element("pressure").checked) {
+        this.select("contact_pressure");
+        if (!this.tools.some((tool) => tool.box.checked)) for (const tool of this.tools) tool.box.checked = true;
+      }
       return this.show();
     };
   }

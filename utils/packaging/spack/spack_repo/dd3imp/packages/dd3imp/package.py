@@ -2,6 +2,7 @@
 """Recipe of Spack for a clone or the source distribution, see utils/packaging/README.md."""
 
 import os
+from pathlib import Path
 
 from spack.package import default_args, depends_on, license, requires, variant, version, when
 from spack_repo.builtin.build_systems.cmake import CMakePackage, generator
@@ -12,6 +13,9 @@ class Dd3imp(CMakePackage):
 
     Its constitutive laws are a library for C, Abaqus and CalculiX.
     """
+
+    # The source distribution, in the folder that DD3IMP_ARCHIVES names; Spack replaces the version.
+    url = f"file://{Path(os.environ.get('DD3IMP_ARCHIVES', '.')).resolve()}/dd3imp-1.0.0.tar.gz"
 
     license("GPL-3.0-or-later")
 
@@ -40,10 +44,6 @@ class Dd3imp(CMakePackage):
     requires("%fortran=gcc@12:", msg="the options of the build are those of gfortran")
 
     generator("ninja")
-
-    def url_for_version(self, version):
-        """Return the place of the source distribution, in the folder that DD3IMP_ARCHIVES names."""
-        return f"file://{os.environ.get('DD3IMP_ARCHIVES', '.')}/dd3imp-{version}.tar.gz"
 
     def cmake_args(self):
         """Return the options of the configuration."""
