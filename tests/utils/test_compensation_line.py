@@ -128,3 +128,13 @@ def test_same_tools(tmp_path, program):
     with pytest.raises(Problem, match="'op1' has the same tools as 'op2'"):
         Compensation(program, process, ["tools@op2"], 1.0, [], None, 1, False, None, True)
     assert Path(process.operations[0].folder).is_dir()
+
+
+def test_not_formed(tmp_path, program):
+    """Tools that form nothing, here those of an operation that only lays the sheet down, are refused."""
+    path = write_line(tmp_path / "line", 0.0, (0.0, 0, 0), 30)
+    deck = tmp_path / "line" / "op2.dat"
+    text = deck.read_text()
+    deck.write_text(text[:text.index("*PHASE clamp")] + text[text.index("*PHASE springback"):])
+    said = call("compensate", path, "--program", program, "--threads", "1", "--tools", "tools@op2", expect=2)
+    assert "no place of the part is formed by 'op2' as the last one" in said

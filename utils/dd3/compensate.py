@@ -170,7 +170,7 @@ class Region(NamedTuple):
 
 
 def corrections_of(program: Path, process: Process, stages: Sequence[Stage], wanted: Wanted, names: Sequence[str],
-                   mirror: Sequence[str], half_turn: bool) -> list[Correction]:
+                   mirror: Sequence[str], half_turn: bool, hold: bool) -> list[Correction]:
     """Return the operations whose tools are corrected."""
     parameters = chosen_operations(program, process, names)
     found = []
@@ -188,8 +188,8 @@ def corrections_of(program: Path, process: Process, stages: Sequence[Stage], wan
             raise Problem(f"{stage.operation.deck}: error: tools in {len(folders)} folders; expected all in the folder "
                           f"of the parameter '{mine[stage.name]}'")
         if not (wanted.owner == number).any():
-            raise Problem(f"{process.path}: error: later operations form again all that '{stage.name}' forms; expected "
-                          "--tools for those")
+            raise Problem(f"{process.path}: error: no place of the part is formed by '{stage.name}' as the last one; "
+                          "expected --tools of other operations" + " or no --hold" * hold)
         found.append(Correction(number, stage, mine, stage.axes(mirror, half_turn)))
     explicit = [text.partition("@")[2] for text in names if "@" in text]
     without = [name for name in parameters if name in explicit]
@@ -245,7 +245,8 @@ class Compensation:
         self.thickness = max(stages[0].job["sheet"]["thickness"])
         self.length = size or 5 * self.thickness
         self.wanted = wanted_shape(stages, BAND * self.length, hold=hold)
-        self.corrections = corrections_of(program, process, stages, self.wanted, names, mirror, half_turn)
+        self.corrections = corrections_of(program, process, stages, self.wanted, names, mirror, half_turn,
+                                           hold)
         self.planes = stages[0].axes(mirror, half_turn)  # of symmetry, in the blank
         self.whole = {correction.number for correction in self.corrections} >= set(self.wanted.owner.tolist()) - {NONE}
         self.target: Target | Free = Free(self.wanted.face, mirror, self.thickness)
