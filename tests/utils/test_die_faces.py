@@ -21,7 +21,9 @@ from dd3.tools.joints import find_joints, folded, kinks
 from dd3.tools.patch_distance import Distance
 from dd3.tools.plane import area_of, chords, crosses
 from dd3.tools.rims import Rim, along_edges, find_rims
+from dd3.tools.settings import ToolSettings
 from dd3.tools.surface import Surface, from_nodes
+from dd3.tools.tool_set import refuse_apart
 
 NAMES = ["hat", "pan", "sharp_hat", "stepped_hat", "z_section", "saddle_tray"]
 SLOW = ["own_flange", "flanged_cover", "island_tray", "sharp_tray", "arched_rail", "s_rim_tray"]
@@ -160,6 +162,19 @@ def test_climbing_ends():
     rims, others = find_rims(surface, joints)
     assert others == 3 and len(rims) == 1 and np.allclose(rims[0].points[:, 0], 10)
     assert find_rims(surface, joints, beside) == ([], 3)
+
+
+def test_apart(tmp_path):
+    """Check that a side in two parts is refused, unless the user has chosen its faces."""
+    x, y = np.meshgrid(np.linspace(0, 10, 3), np.linspace(0, 10, 3))
+    nodes = np.array([np.stack([x + shift, y, 0 * x], axis=-1) for shift in (0, 20)])
+    surface = Surface(from_nodes(nodes), np.arange(2), ["face 1 (Plane)", "face 2 (Plane)"])
+    (tmp_path / "part.step").write_text("made here")
+    options = ToolSettings(tmp_path / "part.step")
+    with pytest.raises(Problem, match=r"in 2 parts, which are not joined: face 1 \(Plane\); face 2 \(Plane\)"):
+        refuse_apart(surface, options)
+    options.faces = ["1-2"]
+    refuse_apart(surface, options)
 
 
 def test_rim_around():

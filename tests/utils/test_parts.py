@@ -9,7 +9,7 @@ import matplotlib.image
 import numpy as np
 import pytest
 from helpers import ROOT, call
-from part_set import PARTS, block, edges, outline, polygon, strip, write
+from part_set import PARTS, block, edges, outline, pocket, polygon, strip, write
 from scipy.spatial.transform import Rotation
 
 from dd3.gmsh_session import session
@@ -143,6 +143,27 @@ def test_gaps(tmp_path):
     assert "no such file" in call("part", "none.step", expect=2)
     (tmp_path / "damaged.step").write_text("ISO-10303-21;\n")
     assert "error" in call("part", "damaged.step", expect=2)
+
+
+def test_gaps_at_both_sides(tmp_path):
+    """Check that gaps at all edges of a sheet are told by the nearest edges, not by those at the distance of the
+    thickness, that no undercut is told before they are joined, and that the distance that is told joins them."""
+    def loose(occ):
+        pocket((40, 30), 16, 1, 9, 5)
+        occ.synchronize()
+        occ.remove(occ.getEntities(3))
+        faces = occ.getEntities(2)
+        for number, face in enumerate(faces):
+            copied = occ.copy([face])
+            if number % 2:
+                occ.translate(copied, 0.004, 0.003, 0.004)
+        occ.remove(faces, recursive=True)
+
+    reading = read_made(tmp_path, loose)
+    assert len(reading.faults) == 1 and "--sew 0.0075 joins them" in reading.faults[0].text, reading.faults
+    with session() as gmsh:
+        reading = read_part(gmsh, Request(tmp_path / "part.step", sew=0.0075))
+    assert not reading.faults and abs(reading.sheet.thickness - 1) < 0.01
 
 
 def test_units():
