@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-#: {"name": "forming_fender_line", "labels": ["slow"], "timeout": 2400, "cost": 270}
+#: {"name": "forming_fender_line", "labels": ["slow"], "timeout": 2400, "cost": 300}
 """The line of the fender: drawn, trimmed and pierced, flanged by a steel and a cam, struck again.
 
     fender_line.py --program build/release/dd3imp --work build/fender_line
@@ -29,7 +29,6 @@ import make_tools  # noqa: E402
 from bench import Value, check_values  # noqa: E402
 
 WARNINGS = {"W106", "W109", "W118"}  # of the coarse mesh (W109, W118), of plastic strain in the release (W106)
-COARSE = {"draw": {"levels": 0}}
 SHORT = 2.5  # degrees by which a flange under the tools may differ: the clearance of 0.1 mm, and the bend of its wall
 BINS = {"arch": np.arange(5, 56, 10), "hood": np.arange(10, 131, 20)}  # turn, degrees; x, mm
 SIDE = {"arch": -1, "hood": 1}  # of the wall from the axis outwards
@@ -163,7 +162,7 @@ def main():
     subprocess.run([sys.executable, FOLDER / "make_tools.py", options.work / "tools"], check=True, capture_output=True)
     process = read_process(options.work / "fender_line" / "line.toml")
     for operation in process.operations:
-        operation.settings |= {"tools": "../tools", **COARSE.get(operation.name, {})}
+        operation.settings["tools"] = "../tools"
     run_process(options.program, process, 1)
     page = write_report(process)
     check(all(operation.name in page.read_text(encoding="utf-8") for operation in process.operations), "the report")
