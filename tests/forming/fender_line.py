@@ -8,7 +8,7 @@
 The tools are made from CAD, the process runs to its end and writes its report. Checked: the trimmed sheet has in plan
 the area within the trim curves; the volume of the sheet is kept; the forces of the tools balance; under the tools both
 flanges have the angles of the posts; the restrike brings the flange of the wheel arch nearer to them and leaves that at
-the hood. Other warnings than those of WARNINGS are errors: W111 of tools whose sides are in line, W124 of a part that was
+the hood. Warnings beside those of WARNINGS are errors: W111 of tools whose sides are in line, W124 of a part that was
 turned.
 """
 import shutil
