@@ -277,7 +277,7 @@ def restrike_steel():
     occ = gmsh.model.occ
     inner = occ.cut([(3, block(THICKNESS))], [arch(ARCH - THICKNESS)])[0][0][1]
     inner = rounded(inner, arch_edges(inner, ARCH - THICKNESS), STRUCK + THICKNESS)
-    outer = occ.intersect([arch(ARCH + BAND, -DEPTH, 30)], [(3, occ.addBox(-16, -86, -60, 200, 200, 120))])[0]
+    outer = occ.intersect([arch(ARCH + BAND, -DEPTH, 30)], [(3, occ.addBox(-20, -90, -60, 200, 200, 120))])[0]
     body = occ.cut(outer, [(3, inner)])[0][0][1]
     rounded(body, edges(body, lambda ends: ends[5] < 1 - DEPTH and ends[3] > 50 and ends[4] > MIDDLE + ARCH - 2), LIP)
 
