@@ -54,7 +54,7 @@ def test_turned(tmp_path, program):
     second operation turns it."""
     found, tools = [], []
     for name, angle, move in (("level", 0.0, (0.0, 0, 0)), ("turned", 17.0, (3.0, 0, 2))):
-        path = write_line(tmp_path / name, angle, move, 30, second=False)
+        path = write_line(tmp_path / name, angle, move, 40, second=False)
         found.append(compensate(program, read_process(path), "tools", 1, 0.01, 1.0, [], None, 1, hold=True))
         tools.append(tools_of(tmp_path / name))
     assert np.allclose(found[0], found[1], rtol=1e-5) and found[0][1][0] < found[0][0][0] / 3

@@ -247,7 +247,8 @@ class Compensation:
         self.wanted = wanted_shape(stages, BAND * self.length, hold=hold)
         self.corrections = corrections_of(program, process, stages, self.wanted, names, mirror, half_turn,
                                            hold)
-        self.planes = stages[0].axes(mirror, half_turn)  # of symmetry, in the blank
+        # Motion of the first of them to the coordinates of the last, and the planes of symmetry in its own.
+        self.first, self.planes = stages[0].motion, stages[0].axes(mirror, half_turn)
         self.whole = {correction.number for correction in self.corrections} >= set(self.wanted.owner.tolist()) - {NONE}
         self.target: Target | Free = Free(self.wanted.face, mirror, self.thickness)
         if fixture:
@@ -305,8 +306,8 @@ class Compensation:
         given = np.vstack((fraction * self.factor * (nodes.goal - nodes.place) @ turn, np.zeros_like(region.still)))
         initial = np.vstack((nodes.initial, region.still))
         places = at_places(shapes.initial, shapes.drawn, initial)
-        field = smooth_field(places, given, region.correction.mirror, self.length, self.half_turn,
-                             (initial, self.planes))
+        level = self.first.back(region.correction.stage.motion.of(places))
+        field = smooth_field(places, given, region.correction.mirror, self.length, self.half_turn, (level, self.planes))
         surface = sheet_surface(shapes.sheet, shapes.step, BEYOND * self.thickness)
         return along_sheet(field, surface, self.thickness)
 

@@ -21,6 +21,7 @@ from dd3.tools.surface import Patches, Surface, from_nodes, points_on, read_patc
 MOST_POINTS = 2000  # of the smooth function
 ROUND = 4.0  # radius at the tips of the multiquadrics, over the distance of the places
 FARTHEST = 3.0  # points in a mean, over its standard deviation
+NEAR = 1e-6  # of a group: round-off at its border, over its size
 
 
 def nodes_of(patch: tuple[np.ndarray, np.ndarray], in_v: int, in_u: int) -> np.ndarray:
@@ -67,24 +68,25 @@ def turned(vectors: np.ndarray) -> np.ndarray:
 
 
 def smooth_field(points: np.ndarray, displacement: np.ndarray, mirror: Sequence[str], reach: float,
-                 half_turn: bool = False, blank: tuple[np.ndarray, Sequence[str]] | None = None) -> Any:
+                 half_turn: bool = False, level: tuple[np.ndarray, Sequence[str]] | None = None) -> Any:
     """Return a smooth function of the place for a displacement at some points, with the symmetries given:
     multiquadrics through means of place and displacement, with the weights of a normal distribution of the standard
     deviation `reach`, at places as far apart. Its slopes go on beyond the points and fade over some `reach`.
 
-    blank: places of the points in the blank, and the planes of symmetry there, by which they are grouped, so that a
+    level: the points before the part is turned, and the planes of symmetry there, by which they are grouped, so that a
     turned part has the same groups; by default those given.
 
     Source: Hardy, J. Geophys. Res. 76 (1971) 1905-1915.
     """
-    initial, planes = blank or (points, mirror)
+    before, planes = level or (points, mirror)
     whole, given, flat = (np.concatenate(images(*pair)) for pair in
-                          ((points, mirror), (displacement, mirror), (initial, planes)))
+                          ((points, mirror), (displacement, mirror), (before, planes)))
     if half_turn:
         whole, given, flat = turned(whole), turned(given), turned(flat)
     size = reach
     while True:
-        _, cell, count = np.unique(np.floor(flat / size).astype(int), axis=0, return_inverse=True, return_counts=True)
+        group = np.floor(flat / size + NEAR).astype(int)
+        _, cell, count = np.unique(group, axis=0, return_inverse=True, return_counts=True)
         if len(count) <= MOST_POINTS:
             break
         size *= 1.25
