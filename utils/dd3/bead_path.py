@@ -268,11 +268,13 @@ class Strip:
 
     def press(self, path: Path, on: list[float], entry: float) -> None:
         """Take the forces, N/mm, by which the tools press on the sheet where it comes to them, and the curvatures from
-        which on they do: all of the force where the sheet does not follow the tool."""
+        which on they do: all of the force where the sheet does not follow the tool, the less of what acts where it
+        leaves the tool the longer it does."""
         arriving = [entry, *(span.pressing for span in path.spans[:2])]
         near = [self.near, *(max(0.0, -span.near) for span in path.spans[:2])]
         for i in range(3):
-            force = on[i] if self.unknowns[i] <= 0 else arriving[i]
+            apart = max(float(self.unknowns[i]), 0.0) * self.radii[i] / self.bead.thickness
+            force = arriving[i] + max(0.0, 1 - apart) * (on[i] - arriving[i])
             self.presses[i] += (force - self.presses[i]) * (HALF if self.presses[i] else 1.0)
             self.beyond[i] = near[i]
 
