@@ -13,7 +13,7 @@ FROM debian:12-slim
 ARG EXTRAS=all
 RUN --mount=type=bind,from=build,source=/usr/local/src/dd3imp/dist,target=/dist \
   apt-get update -q \
-  && apt-get install -y -q --no-install-recommends python3-venv libegl1 libgl1 libgl1-mesa-dri libglu1-mesa \
+  && apt-get install -y -q --no-install-recommends python3-venv libegl1 libgl1 libgl1-mesa-dri libglu1-mesa libgomp1 \
     libxcursor1 libxft2 libxinerama1 libxrender1 \
   && python3 -m venv /opt/dd3 \
   && /opt/dd3/bin/pip install --no-cache-dir "$(echo /dist/*.whl)[$EXTRAS]" \

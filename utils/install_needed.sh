@@ -20,7 +20,7 @@ case "$*" in
 esac
 
 packages=(gfortran gcc libc6-dev cmake ninja-build pkg-config libopenblas-dev libsuitesparse-dev libmetis-dev
-  libhdf5-dev python3 python3-venv python3-pip libegl1 libgl1 libgl1-mesa-dri libglu1-mesa libxcursor1 libxft2
+  libhdf5-dev python3 python3-venv python3-pip libegl1 libgl1 libgl1-mesa-dri libglu1-mesa libgomp1 libxcursor1 libxft2
   libxinerama1 libxrender1)
 
 [ "${1:-}" != --browser ] || packages+=(chromium)

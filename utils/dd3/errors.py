@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 EXTRAS = {"gmsh": "cad", "ezdxf": "cad", "pyvista": "plot", "vtk": "plot", "snakemake": "study"}
 IMPORTED = {"vtkmodules": "vtk"}  # modules with another name than their package
 # Debian's packages with the shared libraries that Gmsh and VTK load.
-DEBIAN = "libegl1 libgl1 libgl1-mesa-dri libglu1-mesa libxcursor1 libxft2 libxinerama1 libxrender1"
+DEBIAN = "libegl1 libgl1 libgl1-mesa-dri libglu1-mesa libgomp1 libxcursor1 libxft2 libxinerama1 libxrender1"
 
 
 LOG = logging.getLogger("dd3")
