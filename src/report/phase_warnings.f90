@@ -291,8 +291,8 @@ contains
         " while the forces of lost constraints faded: the free shape depends on how they fade"
   end function release_warning
 
-  !> Return a warning if viscous forces took more than a small fraction of the energy that a release
-  !> sets free: then the sheet has snapped; empty otherwise.
+  !> Return a warning if viscous forces took more than a small fraction of the change of the elastic
+  !> energy in a phase, in a release the energy set free: then the sheet has snapped; empty otherwise.
   function snap_warning(model, state, elastic) result(text)
     type(model_t), intent(in) :: model
     !> State at the end of the phase.
@@ -301,14 +301,14 @@ contains
     real(wp), intent(in) :: elastic
     character(len=:), allocatable :: text
 
-    real(wp) :: work, released
+    real(wp) :: work, change
 
     text = ""
     work = viscous_work(state%term)
-    released = max(state%start%elastic_energy - elastic, tiny(1.0_wp))
-    if (work > notable_damping*released) text = "in phase '"//model%phase(state%phase)%name// &
+    change = max(abs(elastic - state%start%elastic_energy), tiny(1.0_wp))
+    if (work > notable_damping*change) text = "in phase '"//model%phase(state%phase)%name// &
         "' the sheet snapped: viscous forces took "//to_text(work, 3)//" mJ, "// &
-        to_text(100.0_wp*work/released, 2)//" % of the elastic energy released"
+        to_text(100.0_wp*work/change, 2)//" % of the change of the elastic energy"
   end function snap_warning
 
   !> Return a warning if the energy balance at the end of a run is far from closed; empty otherwise.

@@ -25,6 +25,8 @@ module dd3_report_tool_warnings
   !> the quarter circle. A smaller depth than `slight_depth` thicknesses is not reported.
   real(wp), parameter :: notable_slope = acos(-1.0_wp)/64.0_wp
   real(wp), parameter :: slight_depth = 0.02_wp
+  !> Radius of a tool over the length of an element from which it is plane there.
+  real(wp), parameter :: plane_radius = 1.0e3_wp
 
 contains
 
@@ -135,7 +137,7 @@ contains
           to_text(length, 3)//" mm long: the mesh is too coarse for the tool; expected "
     end associate
     associate (radius => state%observed%deepest_radius(tool))
-      if (radius >= huge(1.0_wp)) then
+      if (radius >= plane_radius*length) then
         text = text//"a line of nodes along the edge of the tool, or a radius there"
         return
       end if

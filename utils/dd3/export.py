@@ -70,11 +70,12 @@ def to_dyna(fields: Fields, step: int, target: Path, shells: bool) -> None:
         lines += solid_bounds(points, cells)
     if max(len(cells), len(points)) > MOST:
         raise Problem(f"{fields.path}: more than {MOST} nodes or elements")
-    job = read_job(fields.path.parent)
+    known = (fields.path.parent / "run.json").is_file()
+    materials = read_job(fields.path.parent)["materials"] if known else []
     if (part > 1).any():
-        LOG.info("parts: " + ", ".join(f"{k} {job['materials'][k - 1]['name']}" for k in np.unique(part)))
+        LOG.info("parts: " + ", ".join(f"{k} {materials[k - 1]['name']}" if known else str(k) for k in np.unique(part)))
     left_out = [name for name in LIMITED if name in fields.grid["CellData"]]
-    if any(has_back_stress(material) for material in job["materials"]):
+    if any(has_back_stress(material) for material in materials):
         left_out.append("back-stresses")
     if left_out:
         LOG.info(f"left out: {', '.join(left_out)}: LS-DYNA has them in history variables, whose places depend on its "
