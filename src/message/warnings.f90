@@ -144,8 +144,8 @@ contains
           "stresses change too much within the increments.", &
           "`accuracy = fine` in `*LIMITS`, a smaller `trial`; compare the results."), &
       row("W116", "sheet that snaps in a release", &
-          "Increments failed without viscous forces, which took more than 0.1 % of the change of "// &
-          "the elastic energy: the sheet jumped from one equilibrium to another.", &
+          "Increments failed without viscous forces, which took more than 0.1 % of the change "// &
+          "of the elastic energy: the sheet jumped from one equilibrium to another.", &
           "Compare with `unload = at_once`, or tools withdrawn in another order by `move`.")]
   end function process_warnings
 

@@ -292,7 +292,7 @@ contains
   end function release_warning
 
   !> Return a warning if viscous forces took more than a small fraction of the change of the elastic
-  !> energy in a phase, in a release the energy set free: then the sheet has snapped; empty otherwise.
+  !> energy in a phase (in a release the energy set free): the sheet has snapped; empty otherwise.
   function snap_warning(model, state, elastic) result(text)
     type(model_t), intent(in) :: model
     !> State at the end of the phase.

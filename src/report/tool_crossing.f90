@@ -19,8 +19,8 @@ module dd3_report_tool_crossing
   !> their patch, the larger of the two.
   real(wp), parameter :: depth_in_thicknesses = 2.0_wp, depth_in_patches = 0.5_wp
   !> Least cosine of the angle between the way to a point behind a surface from the closest point
-  !> and the normal of the patch there. It is 1 within a patch; beside a sharp edge or a corner, where
-  !> a patch may lie in line with the way, the point need not be behind.
+  !> and the normal of the patch there. It is 1 within a patch; beside a sharp edge or a corner,
+  !> where a patch may lie in line with the way, the point need not be behind.
   real(wp), parameter :: least_cosine = 0.5_wp
   !> Number of patches from which on every fourth line of samples is used.
   integer, parameter :: many_patches = 100
