@@ -274,7 +274,9 @@ contains
     end do
   end subroutine set_normal_gradient
 
-  !> Return the sum of the normals of a patch and of its neighbours across the active bounds.
+  !> Return a vector on the outer side of a surface at a sharp edge or corner: the sum of the normals
+  !> of the two patches at the edge, of all patches at the corner weighted by their angles there
+  !> (Baerentzen and Aanaes 2005), whose sign is right for every point that is closest to it.
   pure function mean_normal(surface, k, projection) result(mean)
     type(surface_t), intent(in) :: surface
     !> Number of the patch.
@@ -282,22 +284,110 @@ contains
     type(projection_t), intent(in) :: projection
     real(wp) :: mean(3)
 
-    real(wp) :: normal(3), uv(2), t
-    integer :: a, e
-    logical :: regular
+    integer :: a, edge, start
+    logical :: closed
 
-    call normal_at(surface%patch(k), projection%uv(1), projection%uv(2), mean, regular)
+    mean = corner_part(surface%patch(k), projection%uv, all(projection%active /= 0))
     do a = 1, 2
       if (projection%active(a) == 0) cycle
-      e = edge_number(a, projection%active(a) > 0)
-      associate (edge => surface%edge(e, k))
-        if (edge%patch == 0) cycle
-        t = projection%uv(3 - a)
-        uv = edge_parameters(edge%edge, merge(1.0_wp - t, t, edge%reversed))
-        call normal_at(surface%patch(edge%patch), uv(1), uv(2), normal, regular)
-      end associate
-      mean = mean + normal
+      edge = edge_number(a, projection%active(a) > 0)
+      if (any(projection%active == 0)) then
+        call add_neighbour(surface, k, edge, projection%uv, .false., mean)
+        cycle
+      end if
+      start = edge_number(3 - a, projection%active(3 - a) > 0)
+      call add_around(surface, k, edge, start, projection%uv, mean, closed)
+      if (closed) return
     end do
   end function mean_normal
+
+  !> Add the parts of the patches around a corner of a patch, across one edge after the other until
+  !> the border, or the edge at the other side of the patch, is reached.
+  pure subroutine add_around(surface, k, first, last, corner, mean, closed)
+    type(surface_t), intent(in) :: surface
+    !> Patch, and numbers of its two edges at the corner.
+    integer, intent(in) :: k, first, last
+    !> Parameters of the corner.
+    real(wp), intent(in) :: corner(2)
+    real(wp), intent(inout) :: mean(3)
+    !> False if the border was reached.
+    logical, intent(out) :: closed
+
+    !> Most patches at a corner.
+    integer, parameter :: most = 64
+    real(wp) :: uv(2)
+    integer :: i, patch, edge, direction
+
+    patch = k
+    edge = first
+    uv = corner
+    closed = .false.
+    do i = 1, most
+      associate (neighbour => surface%edge(edge, patch))
+        closed = neighbour%patch == k .and. neighbour%edge == last
+        if (neighbour%patch == 0 .or. closed) return
+      end associate
+      call add_neighbour(surface, patch, edge, uv, .true., mean)
+      direction = 3 - (surface%edge(edge, patch)%edge + 1)/2
+      uv = parameters_across(surface, patch, edge, uv)
+      associate (neighbour => surface%edge(edge, patch))
+        patch = neighbour%patch
+        edge = edge_number(direction, uv(direction) > 0.5_wp)
+      end associate
+    end do
+  end subroutine add_around
+
+  !> Add the part of the neighbour across an edge, if there is one.
+  pure subroutine add_neighbour(surface, k, e, uv, at_corner, mean)
+    type(surface_t), intent(in) :: surface
+    !> Patch, and number of its edge.
+    integer, intent(in) :: k, e
+    !> Parameters of the point on the edge.
+    real(wp), intent(in) :: uv(2)
+    !> Whether the point is a corner.
+    logical, intent(in) :: at_corner
+    real(wp), intent(inout) :: mean(3)
+
+    associate (neighbour => surface%edge(e, k)%patch)
+      if (neighbour == 0) return
+      mean = mean + corner_part(surface%patch(neighbour), parameters_across(surface, k, e, uv), &
+          at_corner)
+    end associate
+  end subroutine add_neighbour
+
+  !> Return the parameters of a point on an edge in the neighbouring patch.
+  pure function parameters_across(surface, k, e, uv) result(other)
+    type(surface_t), intent(in) :: surface
+    !> Patch, and number of its edge.
+    integer, intent(in) :: k, e
+    real(wp), intent(in) :: uv(2)
+    real(wp) :: other(2)
+
+    real(wp) :: t
+
+    t = uv(3 - (e + 1)/2)
+    associate (edge => surface%edge(e, k))
+      other = edge_parameters(edge%edge, merge(1.0_wp - t, t, edge%reversed))
+    end associate
+  end function parameters_across
+
+  !> Return the normal of a patch at a point of its border; at a corner its product with the angle of
+  !> the patch.
+  pure function corner_part(patch, uv, at_corner) result(part)
+    type(patch_t), intent(in) :: patch
+    real(wp), intent(in) :: uv(2)
+    logical, intent(in) :: at_corner
+    real(wp) :: part(3)
+
+    real(wp) :: point(3), first(3, 2), second(3, 3), cosine
+    logical :: regular
+
+    call normal_at(patch, uv(1), uv(2), part, regular)
+    if (.not. at_corner) return
+    call evaluate(patch, uv(1), uv(2), point, first, second)
+    cosine = (1.0_wp - 2.0_wp*uv(1))*(1.0_wp - 2.0_wp*uv(2))*dot_product(first(:, 1), first(:, 2)) &
+        /max(norm2(first(:, 1))*norm2(first(:, 2)), tiny(1.0_wp))
+    part = part*acos(min(max(cosine, -1.0_wp), 1.0_wp))
+  end function corner_part
 
 end module dd3_tools_hit
