@@ -160,8 +160,11 @@ contains
 
     real(wp) :: vector(3)
 
-    vector = state%x(:, node) - model%x0(:, node)
-    if (allocated(model%x_start)) vector = state%x(:, node) - model%x_start(:, node)
+    if (allocated(model%x_start)) then
+      vector = state%x(:, node) - model%x_start(:, node)
+    else
+      vector = state%x(:, node) - model%x0(:, node)
+    end if
     vector = vector - dot_product(vector, path%direction)*path%direction
     if (self%slide%node > 0 .and. norm2(vector) >= self%slide%distance) return
     self%slide = new_place(state, node, norm2(vector), self%tool)

@@ -284,19 +284,22 @@ contains
     type(projection_t), intent(in) :: projection
     real(wp) :: mean(3)
 
+    real(wp) :: uv(2)
     integer :: a, edge, start
     logical :: closed
 
-    mean = corner_part(surface%patch(k), projection%uv, all(projection%active /= 0))
+    uv = projection%uv
+    if (all(projection%active /= 0)) uv = merge(1.0_wp, 0.0_wp, projection%active > 0)
+    mean = corner_part(surface%patch(k), uv, all(projection%active /= 0))
     do a = 1, 2
       if (projection%active(a) == 0) cycle
       edge = edge_number(a, projection%active(a) > 0)
       if (any(projection%active == 0)) then
-        call add_neighbour(surface, k, edge, projection%uv, .false., mean)
+        call add_neighbour(surface, k, edge, uv, .false., mean)
         cycle
       end if
       start = edge_number(3 - a, projection%active(3 - a) > 0)
-      call add_around(surface, k, edge, start, projection%uv, mean, closed)
+      call add_around(surface, k, edge, start, uv, mean, closed)
       if (closed) return
     end do
   end function mean_normal

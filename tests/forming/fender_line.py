@@ -30,7 +30,8 @@ import make_tools  # noqa: E402
 from bench import Value, check_values  # noqa: E402
 
 WARNINGS = {"W106", "W109", "W118"}  # of the coarse mesh (W109, W118), of plastic strain in the release (W106)
-SHORT = 2.5  # degrees by which a flange under the tools may differ: the clearance of 0.1 mm, and the bend of its wall
+# Degrees by which a flange under the tools may differ from its post: 1.8 and 1.9 on this mesh, not compared with others.
+SHORT = 2.5
 BINS = {"arch": np.arange(5, 56, 10), "hood": np.arange(10, 131, 20)}  # turn, degrees; x, mm
 SIDE = {"arch": -1, "hood": 1}  # of the wall from the axis outwards
 AXIS = {"arch": 0.0, "hood": make_tools.CAM}  # of the cylinders from z, degrees
