@@ -6,7 +6,7 @@ module dd3_report_tool_crossing
   use dd3_base_kinds, only : wp
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
-  use dd3_tools_bezier, only : n_sample, normal_at, position_at
+  use dd3_tools_bezier, only : n_sample, position_at
   use dd3_tools_closest, only : find_contact, hint_t, hit_t
   use dd3_tools_surface, only : surface_t
   implicit none
@@ -18,10 +18,6 @@ module dd3_report_tool_crossing
   !> Distance behind a surface within which points are looked for, in thicknesses and in sizes of
   !> their patch, the larger of the two.
   real(wp), parameter :: depth_in_thicknesses = 2.0_wp, depth_in_patches = 0.5_wp
-  !> Least cosine of the angle between the way to a point behind a surface from the closest point
-  !> and the normal of the patch there. It is 1 within a patch; beside a sharp edge or a corner,
-  !> where a patch may lie in line with the way, the point need not be behind.
-  real(wp), parameter :: least_cosine = 0.5_wp
   !> Number of patches from which on every fourth line of samples is used.
   integer, parameter :: many_patches = 100
 
@@ -100,16 +96,11 @@ contains
 
     type(hint_t) :: hint
     type(hit_t) :: hit
-    real(wp) :: normal(3)
-    logical :: regular
 
     depth = 0.0_wp
     if (any(x > surface%upper + search_depth .or. x < surface%lower - search_depth)) return
     call find_contact(surface, x, hint, search_depth, search_depth, hit)
     if (.not. hit%found .or. hit%distance >= 0.0_wp) return
-    call normal_at(surface%patch(hit%patch), hit%u, hit%v, normal, regular)
-    if (.not. regular) return
-    if (dot_product(x - hit%point, normal) > least_cosine*hit%distance) return
     depth = -hit%distance
     hint = hint_t()
     call find_contact(surface, x - moved, hint, search_depth + norm2(moved), search_depth, hit)
