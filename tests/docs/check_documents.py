@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 #: {"name": "docs", "labels": ["docs"], "timeout": 300}
-"""Check README.md, CONTRIBUTING.md and docs/.
+"""Check README.md, CONTRIBUTING.md, docs/ and the links of CHANGELOG.md.
 
     check_documents.py --program build/release/dd3imp
 
@@ -218,6 +218,8 @@ def main():
         text = path.read_text(encoding="utf-8")
         for problem in [*broken_links(path, text), *broken_commands(program, text), *broken_examples(program, text)]:
             wrong.append(f"{path.relative_to(ROOT)}: {problem}")
+    changes = ROOT / "CHANGELOG.md"
+    wrong += [f"CHANGELOG.md: {problem}" for problem in broken_links(changes, changes.read_text(encoding="utf-8"))]
     wrong += [*broken_laws(program, printed), *wrong_codes(program)]
     if wrong:
         sys.exit("\n".join(wrong))

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 
 from dd3.curve import read_curves
 from dd3.triangles import Triangles, prepared, rims, turned_alike
-from dd3.unfold import Balance, Sheet, unfolded
+from dd3.unfold import Balance, Sheet, in_plan, solved, unfolded
 
 HERE = Path("part")
 
@@ -92,6 +92,32 @@ def test_cap(exponent, r):
         assert balance.sheet.exponent == exponent
     assert found[1][0] < 0.4 * found[0][0] and found[1][0] < 1.5e-3 * expected
     assert found[1][1] < 3e-3
+
+
+@pytest.mark.parametrize(("depth", "flange", "exponent"), [(15, 20, 0.05), (20, 20, 0.25)])
+def test_cup(depth, flange, exponent):
+    """A cup that tears has the blank of the lowest exponent found with an exact equilibrium on the way to its own."""
+    radius, height = np.array([0, 20, 24, 24 + flange]), np.array([0, 0, depth, depth])
+    along = np.concatenate(([0], np.cumsum(np.hypot(np.diff(radius), np.diff(height)))))
+
+    def place(u, v):
+        distance, turn = np.interp(u * along[-1], along, radius), np.pi * (v - 0.5)
+        return distance * np.cos(turn), distance * np.sin(turn), np.interp(u * along[-1], along, height)
+
+    mesh, balance, places = blank_of(grid(place, 25, 24), Sheet(exponent), [0])
+    assert exponent < balance.sheet.exponent < 0.5
+    found = in_plan(solved(balance, places, 1e-8), mesh.nodes[:, :2])
+    assert np.allclose(found, places, atol=1e-6)
+
+
+def test_turned_in_plan():
+    """An asymmetric part turned in plan has the turned blank."""
+    mesh = grid(lambda u, v: (40 * u, 30 * v, 15 * u * v**2), 9, 7)
+    cosine, sine = np.cos(0.5), np.sin(0.5)
+    turn = np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]])
+    _, _, places = blank_of(mesh, Sheet(0.2))
+    _, _, turned = blank_of(Triangles(mesh.nodes @ turn.T, mesh.triangles), Sheet(0.2))
+    assert np.allclose(turned, places @ turn[:2, :2].T, atol=1e-6)
 
 
 def test_tangent():

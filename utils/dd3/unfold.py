@@ -181,6 +181,9 @@ class Balance:
         self.tangents = np.stack((first, np.cross(normal, first)), axis=1)  # of the surface at the nodes
         # From forces in a triangle's axes to those along the surface at its nodes (m, 3, 2, 2).
         self.along = np.einsum("mkij,mlj->mkil", self.tangents[self.mesh.triangles], self.axes)
+        motions = np.zeros((len(self.mesh.nodes), 3, 3))
+        motions[:, :2] = rigid_motions(self.mesh.nodes[:, :2])
+        self.carried = np.linalg.qr(np.einsum("nij,njk->nik", self.tangents, motions).reshape(-1, 3))[0]
 
     def back(self, corners: np.ndarray) -> np.ndarray:
         """Return the derivatives (m, 2, 2) of the places in the blank with those in the triangles."""
@@ -255,29 +258,27 @@ def unfolded(path: Path, balance: Balance) -> np.ndarray:
     at the least one that has.
     """
     mesh = balance.mesh
-    places = rigid_map(mesh, tutte_map(mesh, rims(path, mesh.triangles)))
+    start = rigid_map(mesh, tutte_map(mesh, rims(path, mesh.triangles)))
 
-    if not upright(mesh, places):
+    if not upright(mesh, start):
         raise Problem(f"{path}: the surface cannot be laid flat without folds")
-    wanted, reached, step = balance.sheet.exponent, np.inf, FIRST_STEP
-    trial = 1.0
+    wanted, tolerance = balance.sheet.exponent, ROUGH
+    places, reached, step = start, np.inf, FIRST_STEP
     while reached > wanted:
-        balance.sheet.exponent = trial
-        found = solved(balance, places, SOLVED if trial == wanted else ROUGH)
+        balance.sheet.exponent = trial = 1.0 if reached > 1 else max(wanted, reached - step)
+        found = solved(balance, places, SOLVED if trial == wanted else tolerance)
         if found is not None:
             places, reached, step = found, trial, 1.5 * step
+        elif tolerance == ROUGH:
+            # Rough equilibria are found at lower exponents than exact ones: once more, with exact ones on the way.
+            tolerance, places, reached, step = SOLVED, start, np.inf, FIRST_STEP
         elif reached > 1:
             raise Problem(f"{path}: the equilibrium of the membrane is not found; try another --size")
         elif step < LAST_STEP:
             balance.sheet.exponent = reached
-            found = solved(balance, places, SOLVED)
-            if found is None:
-                raise Problem(f"{path}: the equilibrium of the membrane is not found; try another --size")
-            places = found
             break
         else:
             step /= 2
-        trial = max(wanted, reached - step)
     return in_plan(places, mesh.nodes[:, :2])
 
 
@@ -297,19 +298,20 @@ def solved(balance: Balance, places: np.ndarray, tolerance: float) -> np.ndarray
     Newton's method, with steps that are halved until the forces out of balance fall and no triangle turns over. The
     steps are orthogonal to rigid motions in the plane."""
     mesh, count = balance.mesh, len(places)
-    residual, frame = out_of_balance(balance, places)
+    residual = out_of_balance(balance, places)
     for _ in range(NEWTON_STEPS):
         corners = places[mesh.triangles]
         if abs(residual).max() <= tolerance * max(abs(balance.forces(corners)).max(), LEAST * balance.length):
             return places
-        matrix = bmat([[balance.tangent(corners), csc_array(frame)], [csc_array(frame.T), None]], format="csc")
+        matrix = bmat([[balance.tangent(corners), csc_array(balance.carried)],
+                       [csc_array(rigid_motions(places).reshape(-1, 3).T), None]], format="csc")
         factors = splu(matrix, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
         step = factors.solve(np.concatenate((-residual, np.zeros(3))))[:2 * count].reshape(-1, 2)
         share, before = 1.0, np.linalg.norm(residual)
         while share >= SHORTEST:
             trial = places + share * step
             if upright(mesh, trial):
-                residual, frame = out_of_balance(balance, trial)
+                residual = out_of_balance(balance, trial)
                 if np.linalg.norm(residual) < (1 - 1e-4 * share) * before:
                     break
             share /= 2
@@ -319,16 +321,20 @@ def solved(balance: Balance, places: np.ndarray, tolerance: float) -> np.ndarray
     return None
 
 
-def out_of_balance(balance: Balance, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the forces along the surface (2 n), without their parts along rigid motions in the plane, and these
-    motions as orthogonal unit vectors (2 n, 3). The normal reactions, which are not computed, carry those parts."""
+def out_of_balance(balance: Balance, places: np.ndarray) -> np.ndarray:
+    """Return the forces along the surface (2 n), without their parts along the part's rigid motions in plan. A sheet
+    without friction has no equilibrium with them unless the part is symmetric; they are carried as by friction."""
+    forces = balance.assembled(balance.forces(places[balance.mesh.triangles])).ravel()
+    return np.asarray(forces - balance.carried @ (balance.carried.T @ forces))
+
+
+def rigid_motions(places: np.ndarray) -> np.ndarray:
+    """Return the two translations and the rotation of places (n, 2) in the plane: unit vectors (n, 2, 3), orthogonal."""
     motions = np.zeros((len(places), 2, 3))
     motions[:, 0, 0] = motions[:, 1, 1] = 1.0
     centred = places - places.mean(axis=0)
     motions[:, 0, 2], motions[:, 1, 2] = -centred[:, 1], centred[:, 0]
-    frame = np.linalg.qr(motions.reshape(-1, 3))[0]
-    forces = balance.assembled(balance.forces(places[balance.mesh.triangles])).ravel()
-    return forces - frame @ (frame.T @ forces), frame
+    return np.asarray(motions / np.linalg.norm(motions, axis=(0, 1)))
 
 
 def in_plan(places: np.ndarray, plan: np.ndarray) -> np.ndarray:
