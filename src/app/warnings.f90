@@ -11,7 +11,7 @@ module dd3_app_warnings
   use dd3_model_element_length, only : element_length_t, excess_moment, &
       longest_known, measure_elements
   use dd3_model_model, only : model_t
-  use dd3_report_settings_report, only : initial_bead_lengths
+  use dd3_model_terms_bead_points, only : bead_point_t, covered_length, find_bead_points
   use dd3_setup_axes, only : normal_warnings
   use dd3_setup_held_loads, only : find_held_loads, held_load_t
   use dd3_setup_tool_report, only : tool_warnings
@@ -37,6 +37,8 @@ module dd3_app_warnings
   real(wp), parameter :: least_gravity = 9.81e2_wp, largest_gravity = 9.81e4_wp
   !> Usual range of r-values; a published set for a titanium alloy has 19.
   real(wp), parameter :: least_r = 0.05_wp, largest_r = 25.0_wp
+  !> Ratio of thicknesses up to which a draw-bead counts as one on a sheet of one thickness.
+  real(wp), parameter :: equal_thickness = 1.02_wp
   character(len=*), parameter :: unusual_unit = "unusual; units are N, mm and MPa"
 
 contains
@@ -140,22 +142,78 @@ contains
     end do
   end subroutine check_settings
 
-  !> Warn of draw-beads beside the sheet.
+  !> Warn of draw-beads beside the sheet, and over several parts of a tailored blank.
   subroutine check_drawbeads(case, model, warnings)
     type(case_t), intent(in) :: case
     type(model_t), intent(in) :: model
     type(message_list_t), intent(inout) :: warnings
 
-    real(wp), allocatable :: length(:)
+    type(bead_point_t), allocatable :: point(:)
+    character(len=:), allocatable :: parts
     integer :: b
 
-    length = initial_bead_lengths(model)
-    do b = 1, size(length)
-      if (length(b) > 0.0_wp) cycle
-      call add(warnings, "W012", case%drawbead(b)%source%opened, "draw-bead '"// &
-          model%drawbead(b)%name//"'", "no part of its line lies on the sheet, seen along z")
+    if (size(case%drawbead) == 0) return
+    call find_bead_points(model, [(.true., b=1, size(model%drawbead))], model%start_positions(), &
+        point)
+    do b = 1, size(model%drawbead)
+      associate (at => case%drawbead(b)%source%opened, &
+          called => "draw-bead '"//model%drawbead(b)%name//"'")
+        if (covered_length(point, b) <= 0.0_wp) then
+          call add(warnings, "W012", at, called, &
+              "no part of its line lies on the sheet, seen along z")
+          cycle
+        end if
+        parts = parts_under(case, model, pack(point, point%bead == b))
+        if (len(parts) > 0) call add(warnings, "W130", at, called//" crosses "//parts, &
+            "its force per length is the same on all of them; a bead for each gives each its own")
+      end associate
     end do
   end subroutine check_drawbeads
+
+  !> Return the initial thicknesses and the materials under a draw-bead; empty if they are the same
+  !> everywhere.
+  function parts_under(case, model, point) result(text)
+    type(case_t), intent(in) :: case
+    type(model_t), intent(in) :: model
+    !> Points of the bead.
+    type(bead_point_t), intent(in) :: point(:)
+    character(len=:), allocatable :: text
+
+    real(wp) :: thickness(4, size(point))
+    integer :: least(model%n_node), largest(model%n_node)
+    logical :: found(size(model%material))
+    integer :: a, e, m, p
+
+    least = huge(1)
+    largest = 0
+    do e = 1, model%n_element
+      associate (nodes => model%connectivity(:, e), material => model%material_of(e))
+        least(nodes) = min(least(nodes), material)
+        largest(nodes) = max(largest(nodes), material)
+      end associate
+    end do
+    found = .false.
+    do p = 1, size(point)
+      do a = 1, 4
+        associate (ends => model%column(:, point(p)%node(a)))
+          thickness(a, p) = norm2(model%x0(:, ends(2)) - model%x0(:, ends(1)))
+        end associate
+      end do
+      associate (node => point(p)%node)
+        m = maxval(least(node))
+        if (all(largest(node) >= m) .and. minval(largest(node)) == m) found(m) = .true.
+      end associate
+    end do
+    text = ""
+    if (maxval(thickness) > equal_thickness*minval(thickness)) text = "sheet of "// &
+        to_text(minval(thickness), 3)//" to "//to_text(maxval(thickness), 3)//" mm"
+    if (count(found) < 2) return
+    if (len(text) > 0) text = text//", "
+    text = text//"materials"
+    do m = 1, size(found)
+      if (found(m)) text = text//" '"//case%material(m)%source%called()//"'"
+    end do
+  end function parts_under
 
   !> Warn of loads that supports or `displace` carry in part.
   subroutine check_held_loads(case, model, warnings)

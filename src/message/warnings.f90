@@ -215,7 +215,11 @@ contains
       row("W129", "spacer that touches from the start", &
           "At the start of a phase the spacers of a pressed tool push it back by more than its "// &
           "force.", &
-          "A `position` of the tool above the gap of the spacer, or a smaller gap.")]
+          "A `position` of the tool above the gap of the spacer, or a smaller gap."), &
+      row("W130", "draw-bead over several parts of a blank", &
+          "A draw-bead crosses sheet of different thickness or material, and its force per "// &
+          "length is the same on all of it.", &
+          "A `*DRAWBEAD` for each part, with its own force.")]
   end function sheet_warnings
 
   !> Return the notes.
