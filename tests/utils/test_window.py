@@ -21,6 +21,16 @@ def test_borders_of_linear_functions() -> None:
     assert np.allclose(borders(x, y, values), [(2, 0, 1, 0.5)])
 
 
+def test_border_of_waves() -> None:
+    """Waves that fall exponentially have their border where they do, however far apart the runs are."""
+    x, y = np.array([0.0, 3.0, 7.0]), np.array([0.0, 1.0])
+    waves = np.exp(3.5 - 2 * x[:, None] + y)
+    found = Window(("a", "b"), x, y, np.full_like(waves, 0.5), waves)
+    (_, splits, _), (_, values, smooth) = found.limits()
+    assert (splits < 1).all() and (values == waves).all()
+    assert np.allclose(borders(x, y, smooth), [(0, 0, 3, 1.75), (1, 0, 3, 2.25)])
+
+
 def test_answers() -> None:
     """Each run is good, splits, wrinkles, or both; one without an end is nothing."""
     found = Window(("a", "b"), np.arange(2.0), np.arange(3.0), np.array([[0.5, 1.5, 0.5], [1.5, np.nan, 0.5]]),

@@ -8,8 +8,8 @@ All combinations of the values run as those of `dd3 study`, which also explains 
 splits where its largest major strain exceeds the forming limit curve of its material, or with --thinning its largest
 thinning that fraction. It wrinkles where the waves under a holder at the end of the forming are higher than --waves, or
 those in walls higher than --walls, if it is given. Of each border the runs beside it are printed, and the place between
-them by linear interpolation, at which it is drawn. Runs that stopped or were refused are marked and left out.
-window.csv and window.png are written into --work.
+them, at which it is drawn, by linear interpolation, of waves in the logarithm of their height. Runs that stopped or were
+refused are marked and left out. window.csv and window.png are written into --work.
 """
 
 import argparse
@@ -32,6 +32,7 @@ from dd3.study.vary import Case, attempt, combinations, numbers_of, parameter, r
 from dd3.verdict import ended_phases
 
 SPLITS, WRINKLES, BOTH, GOOD = "splits", "wrinkles", "splits and wrinkles", "good"
+LEAST = 1e-3  # height of waves over the limit that counts as none
 COLOURS = {GOOD: "#009e73", SPLITS: "#d55e00", WRINKLES: "#56b4e9", BOTH: "#8b1a1a"}
 
 
@@ -50,6 +51,12 @@ class Window(NamedTuple):
         split, waves = self.split > 1, self.waves > 1
         found = np.select([split & waves, split, waves], [BOTH, SPLITS, WRINKLES], GOOD)
         return np.where(np.isfinite(self.split), found, "")
+
+    def limits(self) -> list[tuple[str, np.ndarray, np.ndarray]]:
+        """Return the name of each limit, the values over it, and those to interpolate, 1 at the limit as well: waves
+        fall by decades along a parameter."""
+        return [(SPLITS, self.split, self.split),
+                (WRINKLES, self.waves, 1 + np.log(np.maximum(self.waves, LEAST)))]
 
 
 class Border(NamedTuple):
@@ -107,9 +114,9 @@ def draw(axes: Axes, found: Window) -> None:
         answer = str(answers[i, j])
         axes.plot(found.x[i], found.y[j], marker="o" if answer else "x", color=COLOURS.get(answer, "0.5"), linestyle="",
                   markersize=7, label=answer or "no end")
-    for values, name in ((found.split, SPLITS), (found.waves, WRINKLES)):
+    for name, values, smooth in found.limits():
         if (values > 1).any() and (values < 1).any():
-            axes.contour(found.x, found.y, values.T, levels=[1.0], colors=COLOURS[name], linewidths=1.3)
+            axes.contour(found.x, found.y, smooth.T, levels=[1.0], colors=COLOURS[name], linewidths=1.3)
     axes.use_sticky_edges = False
     axes.margins(0.06)
     handles, labels = axes.get_legend_handles_labels()
@@ -123,9 +130,9 @@ def draw(axes: Axes, found: Window) -> None:
 def said(found: Window) -> list[str]:
     """Return the lines on the borders."""
     lines = []
-    for values, name in ((found.split, SPLITS), (found.waves, WRINKLES)):
-        rows = [f"  {found.names[1]} = {row.at:g}: {found.names[0]} from {row.low:g} to {row.high:g}, linear "
-                f"{row.place:.4g}" for row in borders(found.x, found.y, values)]
+    for name, values, smooth in found.limits():
+        rows = [f"  {found.names[1]} = {row.at:g}: {found.names[0]} from {row.low:g} to {row.high:g}, about "
+                f"{row.place:.4g}" for row in borders(found.x, found.y, smooth)]
         known = values[np.isfinite(values)]
         none = f"  none; the nearest run has {known.max():.3g} of the limit" if known.size and known.max() <= 1 else (
             "  no border along " + found.names[0])
