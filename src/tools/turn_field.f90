@@ -215,17 +215,16 @@ contains
       integer, intent(in) :: i, j
       real(wp), intent(in) :: least
 
-      real(wp) :: product, distance
+      real(wp) :: product, square
 
       value = least
       product = (component(i) - component(j))*(place(i) - place(j))
       if (product <= 0.0_wp) return
-      distance = norm2(x(:, i) - x(:, j))
-      if (2.0_wp*(place(i) - place(j))**2 < distance**2) return
-      if (product <= least*distance) return
-      value = max(least, product/distance*sqrt(factor_of_pair( &
-          sum((normal(:, i) - normal(:, j))**2), distance**2, length, &
-          inside(i) .and. inside(j))))
+      square = sum((x(:, i) - x(:, j))**2)
+      if (2.0_wp*(place(i) - place(j))**2 < square) return
+      if (product**2 <= least**2*square) return
+      value = max(least, product*sqrt(factor_of_pair(sum((normal(:, i) - normal(:, j))**2), &
+          square, length, inside(i) .and. inside(j))/square))
     end function of_pair
 
   end function largest_along_axis
