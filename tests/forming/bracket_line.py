@@ -40,7 +40,7 @@ def bends(grid):
     """Return the angles by which the tabs are bent from the floor, by the lower nodes near the plane of symmetry."""
     points = np.asarray(grid.points)
     initial = points - np.asarray(grid["displacement"])
-    lower = (np.abs(initial[:, 2]) < 1e-6)
+    lower = initial[:, 2] < initial[:, 2].min() + 1e-6
     order = np.argsort(initial[:, 0])
 
     def line(chosen):
