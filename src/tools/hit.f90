@@ -274,9 +274,9 @@ contains
     end do
   end subroutine set_normal_gradient
 
-  !> Return a vector on the outer side of a surface at a sharp edge or corner: the sum of the normals
-  !> of the two patches at the edge, of all patches at the corner weighted by their angles there
-  !> (Baerentzen and Aanaes 2005), whose sign is right for every point that is closest to it.
+  !> Return a vector on the outer side of a surface at a sharp edge or corner: the sum of the
+  !> normals of the two patches at the edge, of all patches at the corner weighted by their angles
+  !> there (Baerentzen and Aanaes 2005), whose sign is right for every point that is closest to it.
   pure function mean_normal(surface, k, projection) result(mean)
     type(surface_t), intent(in) :: surface
     !> Number of the patch.
@@ -374,8 +374,8 @@ contains
     end associate
   end function parameters_across
 
-  !> Return the normal of a patch at a point of its border; at a corner its product with the angle of
-  !> the patch.
+  !> Return the normal of a patch at a point of its border; at a corner its product with the angle
+  !> of the patch.
   pure function corner_part(patch, uv, at_corner) result(part)
     type(patch_t), intent(in) :: patch
     real(wp), intent(in) :: uv(2)

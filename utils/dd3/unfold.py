@@ -329,7 +329,7 @@ def out_of_balance(balance: Balance, places: np.ndarray) -> np.ndarray:
 
 
 def rigid_motions(places: np.ndarray) -> np.ndarray:
-    """Return the two translations and the rotation of places (n, 2) in the plane: unit vectors (n, 2, 3), orthogonal."""
+    """Return the two translations and the rotation of places (n, 2) in the plane: orthogonal unit vectors (n, 2, 3)."""
     motions = np.zeros((len(places), 2, 3))
     motions[:, 0, 0] = motions[:, 1, 1] = 1.0
     centred = places - places.mean(axis=0)

@@ -8,8 +8,8 @@ All combinations of the values run as those of `dd3 study`, which also explains 
 splits where its largest major strain exceeds the forming limit curve of its material, or with --thinning its largest
 thinning that fraction. It wrinkles where the waves under a holder at the end of the forming are higher than --waves, or
 those in walls higher than --walls, if it is given. Of each border the runs beside it are printed, and the place between
-them, at which it is drawn, by linear interpolation, of waves in the logarithm of their height. Runs that stopped or were
-refused are marked and left out. window.csv and window.png are written into --work.
+them, at which it is drawn, by linear interpolation, of waves in the logarithm of their height. Runs that stopped or
+were refused are marked and left out. window.csv and window.png are written into --work.
 """
 
 import argparse
