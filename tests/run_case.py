@@ -26,6 +26,7 @@ A case is a deck that says in comment lines what is expected (case_file.py), or 
     codes       codes of messages that the run must give, a list; those of docs/messages.md
     contains    texts that the program's output must contain, a list: names and numbers, not sentences; after an exit
                 code of 1 or 2 the error stream alone
+    absent      texts that it must not contain, a list
     printed     texts that it must contain in this order; default those of comment lines
     files       files that the results must contain beside run.json, default ["history.csv", "status.csv", "job.log"],
                 none after an exit code of 1 or 2
@@ -50,8 +51,8 @@ from dd3.tables import number, read_table
 
 SELECTS = ("phase", "point")
 KNOWN = {"deck", "arguments", "exit_code", "reference", "along", "tolerance", "last", "equal", "same", "status",
-         "elements", "contains", "printed", "rows", "codes", "files", "variants", "labels", "timeout", "cost",
-         "description"}
+         "elements", "contains", "absent", "printed", "rows", "codes", "files", "variants", "labels", "timeout",
+         "cost", "description"}
 REFUSED = (1, 2)  # exit codes of a run that was not begun
 TRACES = ("Backtrace", "SIGSEGV", "SIGABRT", "SIGFPE", "runtime error", "At line", "ERROR STOP", "Sanitizer")
 CODE = re.compile(r"\b(?:warning|note|error|stopped) ([A-Z]\d{3}): ")
@@ -192,6 +193,9 @@ def check_output(case, done, results, program):
     for text in case.get("contains", []):
         if text not in said:
             raise Mismatch(f"the output does not contain: {text}")
+    for text in case.get("absent", []):
+        if text in said:
+            raise Mismatch(f"the output contains: {text}")
     for text in case.get("printed", []):
         found = said.find(text, place)
         if found < 0:

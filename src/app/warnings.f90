@@ -170,8 +170,9 @@ contains
     end do
   end subroutine check_drawbeads
 
-  !> Return the initial thicknesses and the materials under a draw-bead; empty if they are the same
-  !> everywhere.
+  !> Return the initial thicknesses, if the blank has regions, and the materials under a draw-bead;
+  !> empty if they are the same everywhere. A face has the largest thickness of its nodes: those of a
+  !> thick region on its border have the thickness beside it.
   function parts_under(case, model, point) result(text)
     type(case_t), intent(in) :: case
     type(model_t), intent(in) :: model
@@ -179,7 +180,7 @@ contains
     type(bead_point_t), intent(in) :: point(:)
     character(len=:), allocatable :: text
 
-    real(wp) :: thickness(4, size(point))
+    real(wp) :: thickness(size(point))
     integer :: least(model%n_node), largest(model%n_node)
     logical :: found(size(model%material))
     integer :: a, e, m, p
@@ -193,19 +194,20 @@ contains
       end associate
     end do
     found = .false.
+    thickness = 0.0_wp
     do p = 1, size(point)
       do a = 1, 4
         associate (ends => model%column(:, point(p)%node(a)))
-          thickness(a, p) = norm2(model%x0(:, ends(2)) - model%x0(:, ends(1)))
+          thickness(p) = max(thickness(p), norm2(model%x0(:, ends(2)) - model%x0(:, ends(1))))
         end associate
       end do
       associate (node => point(p)%node)
         m = maxval(least(node))
-        if (all(largest(node) >= m) .and. minval(largest(node)) == m) found(m) = .true.
+        if (minval(largest(node)) == m) found(m) = .true.
       end associate
     end do
     text = ""
-    if (maxval(thickness) > equal_thickness*minval(thickness)) text = "sheet of "// &
+    if (size(case%region) > 0 .and. maxval(thickness) > equal_thickness*minval(thickness)) text = "sheet of "// &
         to_text(minval(thickness), 3)//" to "//to_text(maxval(thickness), 3)//" mm"
     if (count(found) < 2) return
     if (len(text) > 0) text = text//", "

@@ -29,6 +29,8 @@ def test_border_of_waves() -> None:
     (_, splits, _), (_, values, smooth) = found.limits()
     assert (splits < 1).all() and (values == waves).all()
     assert np.allclose(borders(x, y, smooth), [(0, 0, 3, 1.75), (1, 0, 3, 2.25)])
+    none = Window(("a", "b"), x, y, waves, np.array([[2.0, 2.0], [0.0, 0.01], [0.0, 0.0]])).limits()[1][2]
+    assert np.allclose([row.place for row in borders(x, y, none)], 3 * np.log(2) / np.log(200))
 
 
 def test_answers() -> None:

@@ -8,8 +8,9 @@ All combinations of the values run as those of `dd3 study`, which also explains 
 splits where its largest major strain exceeds the forming limit curve of its material, or with --thinning its largest
 thinning that fraction. It wrinkles where the waves under a holder at the end of the forming are higher than --waves, or
 those in walls higher than --walls, if it is given. Of each border the runs beside it are printed, and the place between
-them, at which it is drawn, by linear interpolation, of waves in the logarithm of their height. Runs that stopped or
-were refused are marked and left out. window.csv and window.png are written into --work.
+them, at which it is drawn, by linear interpolation, of waves in the logarithm of their height, at least a hundredth
+of the limit. Runs that stopped or were refused are marked and left out. window.csv and window.png are written into
+--work.
 """
 
 import argparse
@@ -32,7 +33,7 @@ from dd3.study.vary import Case, attempt, combinations, numbers_of, parameter, r
 from dd3.verdict import ended_phases
 
 SPLITS, WRINKLES, BOTH, GOOD = "splits", "wrinkles", "splits and wrinkles", "good"
-LEAST = 1e-3  # height of waves over the limit that counts as none
+LEAST = 1e-2  # height of waves over the limit, as which a run without waves counts
 COLOURS = {GOOD: "#009e73", SPLITS: "#d55e00", WRINKLES: "#56b4e9", BOTH: "#8b1a1a"}
 
 
@@ -61,7 +62,7 @@ class Window(NamedTuple):
 
 class Border(NamedTuple):
     """A border along the first parameter: the value of the second one, those of the first one at the runs beside it,
-    and between these where a linear function passes the limit."""
+    and the place between these."""
 
     at: float
     low: float
