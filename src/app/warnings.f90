@@ -171,8 +171,8 @@ contains
   end subroutine check_drawbeads
 
   !> Return the initial thicknesses, if the blank has regions, and the materials under a draw-bead;
-  !> empty if they are the same everywhere. A face has the largest thickness of its nodes: those of a
-  !> thick region on its border have the thickness beside it.
+  !> empty if they are the same everywhere. A face has the largest thickness of its nodes: those of
+  !> a thick region on its border have the thickness beside it.
   function parts_under(case, model, point) result(text)
     type(case_t), intent(in) :: case
     type(model_t), intent(in) :: model
@@ -207,8 +207,10 @@ contains
       end associate
     end do
     text = ""
-    if (size(case%region) > 0 .and. maxval(thickness) > equal_thickness*minval(thickness)) text = "sheet of "// &
-        to_text(minval(thickness), 3)//" to "//to_text(maxval(thickness), 3)//" mm"
+    if (size(case%region) > 0 .and. maxval(thickness) > equal_thickness*minval(thickness)) then
+      text = "sheet of "//to_text(minval(thickness), 3)//" to "//to_text(maxval(thickness), 3)// &
+          " mm"
+    end if
     if (count(found) < 2) return
     if (len(text) > 0) text = text//", "
     text = text//"materials"

@@ -3,9 +3,12 @@
 !> nodes lie on the surface curved by the directions of the columns (dd3_sheet_surface_point), in
 !> each layer, then as well as now, so that a flat blank stays flat and a bent sheet keeps its
 !> shape; those of elements without enhanced strains, whose edges stay straight, lie in the middle.
+!> On the border they lie on its smooth curve in the initial sheet (dd3_sheet_border), and where the
+!> deformation of their element takes them from there: a round rim stays round.
 module dd3_sheet_refine
   use dd3_base_kinds, only : wp
   use dd3_element_table, only : element_t
+  use dd3_sheet_border, only : border_t, bulge, new_border
   use dd3_sheet_division, only : division_t, new_division
   use dd3_sheet_divided_mesh, only : new_divided_mesh
   use dd3_sheet_grid, only : grid_t
@@ -54,11 +57,71 @@ contains
       refined%mesh%x = origin%interpolate_nodal(sheet%mesh%x)
       refined%x = origin%interpolate_nodal(sheet%x)
     end if
+    call round_border(sheet, grid, node, division, refined)
     if (.not. sheet%has_state) return
     call origin%carry_points(sheet%stress, refined%stress)
     call origin%carry_points(sheet%internal_variables, refined%internal_variables)
     call origin%carry_axes(sheet%orientation, refined%orientation)
   end subroutine refine_sheet
+
+  !> Move the new columns of the border onto its smooth curve.
+  pure subroutine round_border(sheet, grid, node, division, refined)
+    !> Before the division.
+    type(sheet_t), intent(in) :: sheet
+    type(grid_t), intent(in) :: grid
+    integer, intent(in) :: node(0:, :)
+    type(division_t), intent(in) :: division
+    type(sheet_t), intent(inout) :: refined
+
+    type(border_t) :: border
+    real(wp) :: initial(3, 2), present(3, 2), part(2)
+    integer :: column(4), i, k, q
+
+    call new_border(border, grid)
+    do q = 1, grid%n_quad
+      if (.not. division%divided(q)) cycle
+      do i = 1, 4
+        if (.not. border%edge(i, q)) cycle
+        associate (corner => cshift(grid%corner(:, q), i - 1))
+          column = [border%beside(1, corner(1)), corner(:2), border%beside(2, corner(2))]
+          do k = 0, ubound(node, 1)
+            initial = edge_and_width(sheet%mesh%x(:, node(k, corner)))
+            present = edge_and_width(sheet%x(:, node(k, corner)))
+            part = parts_along(bulge(sheet%mesh%x(:, node(k, merge(column, corner(1), &
+                column > 0))), column([1, 4]) > 0), initial)
+            associate (new => node(k, division%middle(i, q)))
+              refined%mesh%x(:, new) = refined%mesh%x(:, new) + matmul(initial, part)
+              refined%x(:, new) = refined%x(:, new) + matmul(present, part)
+            end associate
+          end do
+        end associate
+      end do
+    end do
+  end subroutine round_border
+
+  !> Return the first edge of a quadrilateral, and the vector from its middle to that of the edge
+  !> across.
+  pure function edge_and_width(x) result(vector)
+    real(wp), intent(in) :: x(3, 4)
+    real(wp) :: vector(3, 2)
+
+    vector(:, 1) = x(:, 2) - x(:, 1)
+    vector(:, 2) = 0.5_wp*(x(:, 3) + x(:, 4) - x(:, 1) - x(:, 2))
+  end function edge_and_width
+
+  !> Return the parts of a vector along two others, in their plane.
+  pure function parts_along(vector, base) result(part)
+    real(wp), intent(in) :: vector(3), base(3, 2)
+    real(wp) :: part(2)
+
+    real(wp) :: metric(2, 2), right(2)
+
+    metric = matmul(transpose(base), base)
+    right = matmul(vector, base)
+    part(1) = metric(2, 2)*right(1) - metric(1, 2)*right(2)
+    part(2) = metric(1, 1)*right(2) - metric(1, 2)*right(1)
+    part = part/(metric(1, 1)*metric(2, 2) - metric(1, 2)**2)
+  end function parts_along
 
   !> Set the positions of the nodes.
   pure subroutine place_nodes(x, node, division, new)
