@@ -1,47 +1,36 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Time the stress update with its tangent for combinations of the registered laws, in ns.
-!>
-!>     benchmark_material [part of a combination's name, such as "hill48 swift"]
+!> Time the stress update with its tangent for the registered laws: each yield criterion with
+!> Swift's law, each other law with von Mises, in ns; tests/benchmark/laws.py makes a table of it.
 program benchmark_material
   use dd3_base_clock, only : wall_time
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t
   use dd3_linalg_tensor, only : kelvin_deviator
-  use dd3_material_check, only : describe_laws, law_backstress, law_hardening, law_yield
+  use dd3_material_check, only : describe_laws, law_backstress, law_hardening, law_modulus, &
+      law_rate, law_temperature, law_yield
   use dd3_material_description, only : description_t, law_choice_t
   use dd3_material_material, only : material_t, new_material
-  use parameter_sets, only : set_t, published_sets
+  use parameter_sets, only : law_of, published_sets, set_t
   implicit none
 
   !> Number of states; the best of several rounds over them counts.
   integer, parameter :: states = 1000, rounds = 20
-  !> Norms of the strain increments.
-  real(wp), parameter :: sizes(4) = [1.0e-5_wp, 1.0e-4_wp, 1.0e-3_wp, 1.0e-2_wp]
-  type(description_t), allocatable :: criteria(:), hardenings(:), backstresses(:)
-  type(law_choice_t), allocatable :: back(:)
+  !> Norms of the strain increments, and their rate, 1/s.
+  real(wp), parameter :: sizes(4) = [1.0e-5_wp, 1.0e-4_wp, 1.0e-3_wp, 1.0e-2_wp], speed = 0.01_wp
+  integer, parameter :: kinds(*) = [law_yield, law_hardening, law_backstress, law_modulus, &
+      law_rate, law_temperature]
+  character(len=*), parameter :: titles(*) = [character(len=11) :: "yield", "hardening", &
+      "back-stress", "modulus", "rate", "temperature"]
+  type(description_t), allocatable :: laws(:)
   type(set_t), allocatable :: sets(:)
-  character(len=60) :: filter
-  integer :: i, j, k
+  integer :: i, k
 
-  call get_command_argument(1, filter)
   sets = published_sets()
-  call describe_laws(law_yield, criteria)
-  call describe_laws(law_hardening, hardenings)
-  call describe_laws(law_backstress, backstresses)
-  print '(a)', "ns per update with tangent; strain increments 1e-5 1e-4 1e-3 1e-2; "// &
-      "mean Newton iterations"
-  do k = 0, size(backstresses)
-    do i = 1, size(criteria)
-      do j = 1, size(hardenings)
-        if (k == 0) then
-          allocate (back(0))
-        else
-          allocate (back(1))
-          back(1) = law_choice_t(backstresses(k)%name, backstresses(k)%example)
-        end if
-        call measure(choice_of(criteria(i)), choice_of(hardenings(j)), back)
-        deallocate (back)
-      end do
+  print '(a)', "kind law elastic 1e-5 1e-4 1e-3 1e-2 ns iterations"
+  do k = 1, size(kinds)
+    call describe_laws(kinds(k), laws)
+    do i = 1, size(laws)
+      call measure(k, choice_of(laws(i)))
     end do
   end do
 
@@ -59,26 +48,32 @@ contains
     end do
   end function choice_of
 
-  !> Time one combination and print a line.
-  subroutine measure(criterion, hardening, back)
-    type(law_choice_t), intent(in) :: criterion, hardening, back(:)
+  !> Time a law with others of the simplest kind and print a line.
+  subroutine measure(k, law)
+    !> Kind of the law, as its place in the list.
+    integer, intent(in) :: k
+    type(law_choice_t), intent(in) :: law
 
     type(material_t) :: material
+    type(law_choice_t) :: choice(size(kinds))
+    type(law_choice_t), allocatable :: back(:)
     real(wp) :: plastic_time(size(sizes)), iterations(size(sizes)), elastic_time
-    character(len=60) :: name
     integer :: n
 
-    name = trim(criterion%name)//" "//trim(hardening%name)
-    if (size(back) > 0) name = trim(name)//" "//trim(back(1)%name)
-    if (index(name, trim(filter)) == 0) return
-    call new_material(material, 2.1e5_wp, 0.3_wp, criterion, hardening, back)
+    choice(1) = law_of("von_mises")
+    choice(2) = law_of("swift K=565 e0=0.007117 n=0.2589")
+    choice(k) = law
+    allocate (back(merge(1, 0, kinds(k) == law_backstress)))
+    if (size(back) > 0) back(1) = law
+    call new_material(material, 2.1e5_wp, 0.3_wp, choice(1), choice(2), back, choice(4), choice(5), &
+        choice(6))
     do n = 1, size(sizes)
       call time_updates(material, sizes(n), .true., plastic_time(n), iterations(n))
     end do
     call time_updates(material, 1.0e-5_wp, .false., elastic_time, iterations(1))
     call time_updates(material, sizes(1), .true., plastic_time(1), iterations(1))
-    print '(a40, 2(a, f7.1), 3f8.1, a, 4f5.1)', name, " elastic ", elastic_time, &
-        "  plastic ", plastic_time, "  iterations ", iterations
+    print '(a, 5f9.1, 4f6.1)', trim(titles(k))//" "//trim(law%name), elastic_time, plastic_time, &
+        iterations
   end subroutine measure
 
   !> Return a vector of random numbers between -1 and 1.
@@ -124,7 +119,7 @@ contains
       start = wall_time()
       do n = 1, states
         call material%update(stress(:, n), internal_variables(:, n), strain(:, n), stress_trial, &
-            internal_trial, tangent, plastic, verdict)
+            internal_trial, tangent, plastic, verdict, length/speed)
         total = total + verdict%iterations
       end do
       time = min(time, 1.0e9_wp*(wall_time() - start)/states)

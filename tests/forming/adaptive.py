@@ -16,7 +16,7 @@ import studies
 
 from dd3.errors import run
 from dd3.fields import Fields
-from dd3.pages import put_table
+from dd3.pages import put_table, table
 from dd3.programs import command, launch
 from dd3.run import read_job
 from dd3.tables import interpolate, read_table, totals
@@ -119,16 +119,16 @@ def tables(cups):
               for name, cup in cups.items()}
     differences = {name: cup.largest_difference(fine) for name, cup in cups.items()}
     return {
-        "effort": studies.table(
+        "effort": table(
             ["mesh", *(f"elements at {part:.0%}".replace("%", " %") for part in PARTS), "repeated", "increments",
              "iterations", "CPU seconds", "of 60 x 60"],
             [[name, *effort(cup, fine)] for name, cup in cups.items()]),
-        "force": studies.table(
+        "force": table(
             ["mesh", *(f"{step} mm" for step in STEPS), f"largest difference beyond {BEYOND:g} mm"],
             [[name, *(f"{cup.force_at(step):.3f}" for step in STEPS),
               "" if cup is fine else f"{100*differences[name][0]:.1f} % at {differences[name][1]:.1f} mm"]
              for name, cup in cups.items()]),
-        "shape": studies.table(
+        "shape": table(
             ["mesh", *shape],
             [[name, *(f"{value:.3f}" if cup is fine else beside(value, exact, 3)
                       for value, exact in zip(shapes[name], shapes[FINE]))] for name, cup in cups.items()])}

@@ -23,7 +23,7 @@ from scipy.interpolate import LinearNDInterpolator
 from dd3.errors import run
 from dd3.fields import Fields
 from dd3.mesh import Mesh, read_run, write_inp
-from dd3.pages import put_table
+from dd3.pages import put_table, table
 from dd3.programs import command, launch
 from dd3.run import read_job
 from dd3.tables import read_table, totals
@@ -259,7 +259,7 @@ def main():
     options = studies.arguments(__doc__)
     results = {(name, mesh): make(options, name, cup, mesh) for name, cup in CUPS.items() for mesh in (REFINED, UNIFORM)}
     found = {key: result for key, result in results.items() if result}
-    text = studies.table(["blank", "mesh", "elements", "increments", "iterations", "CPU seconds", "onset, mm",
+    text = table(["blank", "mesh", "elements", "increments", "iterations", "CPU seconds", "onset, mm",
                           "waves at the onset (amplitude, mm)", "height at half of the travel, mm", "waves there"],
                          [[*key, *result.words()] for key, result in found.items()])
     print(text)

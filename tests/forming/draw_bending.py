@@ -15,7 +15,7 @@ import studies
 
 from dd3.errors import run
 from dd3.fields import Fields
-from dd3.pages import put_table
+from dd3.pages import put_table, table
 from dd3.run import read_job
 
 DECK, REPORT, PICTURE = studies.paths("draw_bending")
@@ -164,9 +164,9 @@ def main():
             lines[f"{holder}, {law}, {175/mesh:.2f} mm"] = line
     head = ["holder", "hardening", "element, mm", "theta1, degrees", "theta2, degrees", "rho, mm", "increments"]
     for name, found in rows.items():
-        print(studies.table(head, found))
+        print(table(head, found))
         if options.write and found:
-            put_table(REPORT, name, studies.table(head, found), jobs[name])
+            put_table(REPORT, name, table(head, found), jobs[name])
     if options.write and lines:
         draw(lines)
     sys.exit(0 if complete else 1)

@@ -21,7 +21,7 @@ import studies
 from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator
 
 from dd3.errors import run
-from dd3.pages import put_table
+from dd3.pages import put_table, table
 from dd3.programs import command, launch
 from dd3.run import read_job
 from dd3.sheet import Sheet
@@ -162,10 +162,10 @@ def main():
         fine = list(results.values())[-1]
         rows += [row_of(name, mesh, result, fine) for mesh, result in results.items() if result]
         jobs += [result.job for result in results.values() if result]
-    print(studies.table(HEAD, rows))
+    print(table(HEAD, rows))
     if options.write and rows:
         places = [HEAD.index(title) for title in SHOWN]
-        put_table(REPORT, "examples", studies.table(SHOWN, [[row[place] for place in places] for row in rows
+        put_table(REPORT, "examples", table(SHOWN, [[row[place] for place in places] for row in rows
                                                             if row[1] not in (FINE, FINE_REFINED)]), jobs)
     sys.exit(0 if complete else 1)
 

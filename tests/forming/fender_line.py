@@ -5,7 +5,7 @@
 
     fender_line.py --program build/release/dd3imp --work build/fender_line
 
-The tools are made from CAD, the process runs to its end and writes its report. Checked: the trimmed sheet has in plan
+The CAD is written, the process makes the tools of it, runs to its end and writes its report. Checked: the trimmed sheet has in plan
 the area within the trim curves; the volume of the sheet is kept; the forces of the tools balance; under the tools both
 flanges have the angles of the posts; the restrike brings the flange of the wheel arch nearer to them and leaves that at
 the hood. Warnings beside those of WARNINGS are errors: W111 of tools whose sides are in line, W124 of a part that was
@@ -26,7 +26,7 @@ from dd3.programs import parser_of_runs
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "input_files" / "fender_line"
 sys.path[:0] = [str(ROOT / "tests"), str(FOLDER)]
-import make_tools  # noqa: E402
+import make_cad  # noqa: E402
 from bench import Value, check_values  # noqa: E402
 
 WARNINGS = {"W106", "W109", "W118"}  # of the coarse mesh (W109, W118), of plastic strain in the release (W106)
@@ -34,7 +34,7 @@ WARNINGS = {"W106", "W109", "W118"}  # of the coarse mesh (W109, W118), of plast
 SHORT = 2.5
 BINS = {"arch": np.arange(5, 56, 10), "hood": np.arange(10, 131, 20)}  # turn, degrees; x, mm
 SIDE = {"arch": -1, "hood": 1}  # of the wall from the axis outwards
-AXIS = {"arch": 0.0, "hood": make_tools.CAM}  # of the cylinders from z, degrees
+AXIS = {"arch": 0.0, "hood": make_cad.CAM}  # of the cylinders from z, degrees
 TOOLS = {"flange": ("post", "pad", "steel", "cam"), "strike": ("post", "pad", "steel"),
          "draw": ("punch", "die", "holder")}
 
@@ -44,10 +44,10 @@ def in_cylinder(points, flange):
     directions from the axis."""
     angle = np.radians(AXIS[flange])
     turn = np.array([[1, 0, 0], [0, np.cos(angle), -np.sin(angle)], [0, np.sin(angle), np.cos(angle)]])
-    middle = [0, make_tools.MIDDLE, 0] if flange == "arch" else [0, *make_tools.hood_edge()]
+    middle = [0, make_cad.MIDDLE, 0] if flange == "arch" else [0, *make_cad.hood_edge()]
     local = (points - middle) @ turn.T
     if flange == "hood":
-        local[:, 1] += make_tools.HOOD
+        local[:, 1] += make_cad.HOOD
     radius = np.hypot(local[:, 0], local[:, 1])
     away = np.pad(local[:, :2] / radius[:, None], ((0, 0), (0, 1))) @ turn
     return radius, np.degrees(np.arctan2(local[:, 0], local[:, 1])) if flange == "arch" else local[:, 0], away
@@ -63,11 +63,11 @@ def faces_of(grid):
 
 def post_normals(points):
     """Return the normals of the face of the post at the places of points in plan of the part."""
-    x, y, _ = make_tools.untipped(points).T
+    x, y, _ = make_cad.untipped(points).T
     step = 1e-4
-    slope = [(make_tools.face(x - step, y) - make_tools.face(x + step, y)) / (2 * step),
-             (make_tools.face(x, y - step) - make_tools.face(x, y + step)) / (2 * step), np.ones(len(x))]
-    return make_tools.tipped(np.stack(slope, axis=-1) / np.linalg.norm(slope, axis=0)[:, None])
+    slope = [(make_cad.face(x - step, y) - make_cad.face(x + step, y)) / (2 * step),
+             (make_cad.face(x, y - step) - make_cad.face(x, y + step)) / (2 * step), np.ones(len(x))]
+    return make_cad.tipped(np.stack(slope, axis=-1) / np.linalg.norm(slope, axis=0)[:, None])
 
 
 def angle_between(first, second):
@@ -81,7 +81,7 @@ def bends(closed, free, flange, radius):
     centre, normal = faces_of(closed)
     after = faces_of(free)[1]
     distance, place, away = in_cylinder(centre, flange)
-    corner = {"arch": make_tools.ARCH, "hood": make_tools.HOOD}[flange]
+    corner = {"arch": make_cad.ARCH, "hood": make_cad.HOOD}[flange]
     beyond = SIDE[flange] * (distance - corner)
     wall = (np.abs(beyond - 0.4) < 1) & (np.einsum("ni,ni->n", normal, SIDE[flange] * away) > 0.98)
     face = (beyond < -radius - 1) & (beyond > -radius - 11)
@@ -127,9 +127,9 @@ def check_runs(runs):
     for name, run in runs.items():
         codes = {row["code"] for row in run.job["warnings"]}
         check(codes <= WARNINGS, f"warnings of {name}: {codes - WARNINGS}")
-    half = make_tools.rim()
+    half = make_cad.rim()
     outline = area_in_plan(np.concatenate([half, [[0, half[-1, 1], 0], [0, half[0, 1], 0]]]))
-    opening = area_in_plan(make_tools.opening())
+    opening = area_in_plan(make_cad.opening())
     check_values(
         Value("area of the trimmed sheet in plan, mm2", outline - opening, plan_of(runs["trim"].fields[0]), 1e-3),
         *(Value(f"volume of the sheet in {name}, end over start", 1.0,
@@ -142,8 +142,8 @@ def check_angles(runs):
     """Check the flanges under the tools and after their springback, before and after the restrike."""
     flanged, struck = runs["flange"].fields, runs["restrike"].fields
     closed = flanged[int(flanged.step_at("flange"))]
-    first = {name: bends(closed, flanged[-1], name, make_tools.BEND) for name in BINS}
-    again = bends(struck[int(struck.step_at("strike"))], struck[-1], "arch", make_tools.STRUCK)
+    first = {name: bends(closed, flanged[-1], name, make_cad.BEND) for name in BINS}
+    again = bends(struck[int(struck.step_at("strike"))], struck[-1], "arch", make_cad.STRUCK)
     for name, rows in (("arch", first["arch"]), ("hood", first["hood"]), ("arch, struck", again)):
         print(name, "post, closed, free:", *(" ".join(f"{angle:.2f}" for angle in row) for row in rows), sep="\n  ")
     check_values(*(Value(f"{name}: angle under the tools less that of the post, degrees", 0.0,
@@ -155,16 +155,15 @@ def check_angles(runs):
 
 
 def main():
-    """Make the tools, run the line and measure the flanges."""
+    """Write the CAD, run the line and measure the flanges."""
     options = parser_of_runs(__doc__).parse_args()
     shutil.rmtree(options.work, ignore_errors=True)
     for folder in ("fender_line", "materials"):
         shutil.copytree(ROOT / "input_files" / folder, options.work / folder,
-                        ignore=shutil.ignore_patterns("*.out", "__pycache__"))
-    subprocess.run([sys.executable, FOLDER / "make_tools.py", options.work / "tools"], check=True, capture_output=True)
-    process = read_process(options.work / "fender_line" / "line.toml")
-    for operation in process.operations:
-        operation.settings["tools"] = "../tools"
+                        ignore=shutil.ignore_patterns("*.out", "*.bez", "__pycache__"))
+    folder = options.work / "fender_line"
+    subprocess.run([sys.executable, FOLDER / "make_cad.py", folder / "cad"], check=True, capture_output=True)
+    process = read_process(folder / "line.toml")
     run_process(options.program, process, 1)
     page = write_report(process)
     check(all(operation.name in page.read_text(encoding="utf-8") for operation in process.operations), "the report")

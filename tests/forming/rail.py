@@ -14,7 +14,7 @@ import numpy as np
 import studies
 
 from dd3.errors import run
-from dd3.pages import put_table
+from dd3.pages import put_table, table
 from dd3.run import read_job
 from dd3.sheet import Sheet
 from dd3.springback import best_fit, find, twist
@@ -156,7 +156,7 @@ def main():
             rows.append(row_of(material, mesh, rail, list(found.values())[-1][0], folder))
             if material == "dp600":
                 pictures[" x ".join(mesh.split())] = rail
-    text = studies.table(HEAD, rows)
+    text = table(HEAD, rows)
     print(text)
     if options.write:
         put_table(REPORT, "springback", text, jobs)

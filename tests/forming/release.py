@@ -16,7 +16,7 @@ from scipy.spatial import cKDTree
 
 from dd3.errors import Problem, run
 from dd3.fields import Fields
-from dd3.pages import put_table
+from dd3.pages import put_table, table
 from dd3.run import read_job
 from dd3.sheet import Sheet
 from dd3.springback import best_fit
@@ -24,7 +24,7 @@ from dd3.springback import best_fit
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests"))
 from bench import Bench  # noqa: E402
-from studies import arguments, table  # noqa: E402
+from studies import arguments  # noqa: E402
 
 INPUTS = ROOT / "input_files"
 NEAR = 1e-6  # distance of nodes that are one, mm

@@ -15,7 +15,7 @@ import studies
 
 from dd3.errors import run
 from dd3.fields import Fields
-from dd3.pages import put_table
+from dd3.pages import put_table, table
 from dd3.plot.point import r_value
 from dd3.programs import run_points
 from dd3.run import read_job
@@ -124,9 +124,9 @@ def main():
     estimates = {law: estimate(options.program, material) for law, material in MATERIALS.items()}
     rows = [row(name, cup.angles, cup.heights, efforts[name]) for name, cup in cups.items()]
     rows += [row(f"{law}, estimate", *values, [""]) for law, values in estimates.items()]
-    heights = studies.table(["run", *(f"{angle}°" for angle in ANGLES), "mean", "range", "ears", "at, degrees",
+    heights = table(["run", *(f"{angle}°" for angle in ANGLES), "mean", "range", "ears", "at, degrees",
                              "increments"], rows)
-    thickness = studies.table(["run", "smallest", "largest", "rim, smallest", "rim, largest"],
+    thickness = table(["run", "smallest", "largest", "rim, smallest", "rim, largest"],
                               [[name, *(f"{value:.3f}" for value in (*cup.thickness, cup.rim.min(), cup.rim.max()))]
                                for name, cup in cups.items()])
     print(heights, thickness, sep="\n\n")

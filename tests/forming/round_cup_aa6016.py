@@ -13,7 +13,7 @@ import studies
 from round_cup import ANGLES, Cup, row
 
 from dd3.errors import run
-from dd3.pages import put_table
+from dd3.pages import put_table, table
 from dd3.run import read_job
 from dd3.tables import read_table
 
@@ -79,7 +79,7 @@ def main():
                             [*(f"{value:.3f}" for value in cup.thickness), studies.increments(folder)]))
     heading = ["", *(f"{angle}°" for angle in ANGLES), "mean", "range", "ears", "at, degrees", "thinnest", "thickest",
                "increments"]
-    text = studies.table(heading, rows)
+    text = table(heading, rows)
     print(text)
     if options.write and len(cups) == len(RUNS):
         put_table(REPORT, "heights", text, jobs)
@@ -104,7 +104,7 @@ def elastic_tools(options, heading):
         rows.append([*row(name, cup.angles, cup.heights, [f"{value:.3f}" for value in cup.thickness]),
                      *(largest(folder, tool) for tool in ("die", "punch")), studies.increments(folder)])
     complete = len(rows) == len(ELASTIC_RUNS)
-    text = studies.table([*heading[:-1], "die deflects by", "punch deflects by", *heading[-1:]], rows)
+    text = table([*heading[:-1], "die deflects by", "punch deflects by", *heading[-1:]], rows)
     print(text)
     if options.write and complete:
         put_table(REPORT, "elastic", text, jobs)
@@ -130,7 +130,7 @@ def teams(options, heading):
             rows.append(row(f"{team}: here", elastic.angles, elastic.heights,
                             [f"{np.ptp(rigid.heights):.2f}", f"{punch_force(folder):.1f}"]))
     complete = len(jobs) == len(TEAMS) * len(DIES)
-    text = studies.table([*heading[:-3], "range, rigid tools", "punch, kN"], rows)
+    text = table([*heading[:-3], "range, rigid tools", "punch, kN"], rows)
     print(text)
     if options.write and complete:
         put_table(REPORT, "teams", text, jobs)

@@ -13,7 +13,7 @@ import studies
 
 from dd3.errors import run
 from dd3.fields import Fields
-from dd3.pages import put_table
+from dd3.pages import put_table, table
 from dd3.run import read_job
 
 DECK, REPORT, PICTURE = studies.paths("split_ring")
@@ -100,7 +100,7 @@ def main():
         jobs.append(read_job(folder))
         rows.append([name, *(f"{found[place]:.2f}" if place in found else "" for place in PLACES),
                      studies.increments(folder)])
-    text = studies.table(["law, criterion, mesh", *(f"{place:g} to {place + HEIGHT:g} mm" for place in PLACES),
+    text = table(["law, criterion, mesh", *(f"{place:g} to {place + HEIGHT:g} mm" for place in PLACES),
                           "increments"], rows)
     print(text)
     if options.write:

@@ -16,7 +16,7 @@ import studies
 
 from dd3.errors import run
 from dd3.fields import Fields
-from dd3.pages import places, put_table
+from dd3.pages import places, put_table, table
 from dd3.run import read_job
 from dd3.tables import interpolate, read_table
 
@@ -146,23 +146,23 @@ def tables(cups):
     """Return the tables of the page by name."""
     end = TRAVELS[-1]
     found = {
-        "draw-in": studies.table(
+        "draw-in": table(
             ["mesh"] + [f"{quantity} at {travel:g} mm" for travel in TRAVELS for quantity in ("DX", "DY", "DD")]
             + ["increments"],
             [[name] + [f"{value:.2f}" for travel in TRAVELS for value in cup.draw_in(travel)]
              + [studies.increments(cup.folder)] for name, cup in cups.items()]),
-        "force": studies.table(
+        "force": table(
             ["mesh", *(f"{step} mm" for step in STEPS)],
             [[name, *(f"{force:.2f}" for force in cup.forces())] for name, cup in cups.items()]),
-        "thickness": studies.table(
+        "thickness": table(
             ["mesh", *(f"{place:g}" for place in PLACES), "smallest", "at", "largest", "at"],
             [[name, *(f"{value:.3f}" for value in np.interp(PLACES, cup.place, cup.thickness(end))), *cup.extremes(end)]
              for name, cup in cups.items()]),
-        "measured": studies.table(
+        "measured": table(
             ["", *(f"{quantity} at {travel:g} mm" for travel in TRAVELS for quantity in ("DX, DY", "DD"))],
             beside_published(cups))}
     if FINE_ALUMINIUM in cups:
-        found["aluminium"] = studies.table(["travel, mm", "DX, mm", "DD, mm", "smallest thickness, mm",
+        found["aluminium"] = table(["travel, mm", "DX, mm", "DD, mm", "smallest thickness, mm",
                                             "punch force on the quarter, kN"], course(cups[FINE_ALUMINIUM]))
     return found
 

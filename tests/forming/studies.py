@@ -57,8 +57,3 @@ def make(options, name, deck, settings):
 def increments(folder):
     """Return the number of increments of a run as text."""
     return str(totals(read_table(folder / "status.csv")).increments)
-
-
-def table(head, rows):
-    """Return the lines of a table."""
-    return "\n".join("| " + " | ".join(row) + " |" for row in (head, ["---"]*len(head), *rows))

@@ -40,12 +40,14 @@ FORCES = ("_fx", "_fy", "_fz", "_rx", "_ry", "_rz")
 COMPONENTS = ("x", "stress", "internal_variables", "orientation", "lambda", "tool_displacement")
 # MUMPS begins with too little workspace, so that it has to be given more.
 ENVIRONMENT = {**os.environ, **MPI_ENVIRONMENT, "PETSC_OPTIONS": "-dd3_petsc_mumps_mat_mumps_icntl_14 -60"}
-# Case, linear solver, exit code: a sheet that sags and is badly conditioned, with cut-backs; draw-beads; enhanced
-# strains; a pressed tool; cut-backs at an open edge; an early end of a phase; friction by the plastic strain; an
-# iterative solver; factors on the disk; elements of different sizes; elements divided in the run, once or twice, with a
-# pressed tool, and with increments made again, also with an iterative solver; a run that stops.
+# Case, linear solver, exit code: a sheet that sags and is badly conditioned, with cut-backs; draw-beads; tailored
+# blanks; enhanced strains; a pressed tool; cut-backs at an open edge; an early end of a phase; friction by the plastic
+# strain; an iterative solver; factors on the disk; elements of different sizes; elements divided in the run, once or
+# twice, with a pressed tool, and with increments made again, also with an iterative solver; a run that stops.
 JOBS = ((RAIL, "auto", 0),
         ("drawbead_strip", "auto", 0),
+        ("drawbead_tailored", "auto", 0),
+        ("tailored_parallel", "auto", 0),
         ("squeeze_solid_shell", "auto", 0),
         ("holder_gap", "auto", 0),
         ("strip_over_open_edge", "auto", 0),

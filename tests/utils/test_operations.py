@@ -160,6 +160,53 @@ def test_process_refused(tmp_path, program):
     assert "op10.dat:19: error E112" in said and "none.txt" in said and not (tmp_path / "op10.out").exists()
 
 
+BOX = """*PROFILE plate
+  start = 0 0
+  line = 60 0
+  extrude = -5 45
+"""
+
+
+def test_process_makes_tools(tmp_path, program):
+    """Tools are made of their sources, again when source or options have changed, and no other file is replaced."""
+    (tmp_path / "plate.shape").write_text(BOX)
+    tool = (STRIP + '*TOOL plate\n  patches = "plate.bez"\n  friction = 0\n  contact = z_min\n'
+            '  position = 0 0 -50\n*CONTACT\n')
+    rows = '[[tool]]\nsource = "plate.shape"\ntoward = [0, 0, 1]\n'
+    words = ("process", tmp_path / "part.toml", "--program", program, "--threads", "1")
+    make_process(tmp_path, first=tool, text=PROCESS + rows)
+    assert "plate.bez: made of plate.shape" in call(*words)
+    said = call(*words)
+    assert "made of" not in said and said.count("has ended before") == 2
+    (tmp_path / "plate.shape").write_text(BOX.replace("60", "64"))
+    said = call(*words)
+    assert "made of" in said and said.count("reached its end") == 2
+    make_process(tmp_path, first=tool, text=PROCESS + rows + "offset = 1\n")
+    assert "made of" in call(*words)
+    path = tmp_path / "plate.bez"
+    path.write_text("# my own\n" + path.read_text())
+    assert "does not replace it" in call(*words, expect=2) and path.read_text().startswith("# my own")
+
+
+def test_process_refuses_tools(tmp_path, program):
+    """All wrong rows of tools are told at once."""
+    (tmp_path / "plate.shape").write_text(BOX)
+    words = ("process", tmp_path / "part.toml", "--program", program)
+    made = '[[tool]]\nsource = "plate.shape"\n'
+    make_process(tmp_path, text=PROCESS + '[[tool]]\nsource = "none.step"\n' + made + "toward = [1, 2]\n" + made + made
+                 + "offset = 2\nfaces = [3]\n[[tool]]\nturn = true\n" + made + "rotate = [0, 0, 1, 90]\n")
+    said = call(*words, expect=2)
+    for text in ("tool 1: ", "none.step: no such file", "tool 2: toward takes three numbers", "tool 4: --faces takes CAD",
+                 "tool 5: no source", "tool 6: rotate takes"):
+        assert text in said
+    for rows, text in ((made + made, "plate.bez is the target of two tools"),
+                       (made + "thickness = 1\n", "unknown key 'thickness' of tool 1"),
+                       (made + "offset = true\n", "offset of tool 1 is a bool"),
+                       (made + 'target = "plate.dat"\n', "ends in .bez")):
+        make_process(tmp_path, text=PROCESS + rows)
+        assert text in call(*words, expect=2)
+
+
 def rim_of(points, radius):
     """Return the rim of a sheet that has been stretched from the unit circle to a radius, at some of its points."""
     outward = points / np.linalg.norm(points, axis=1, keepdims=True)

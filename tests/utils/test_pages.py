@@ -36,7 +36,7 @@ def test_put_table(tmp_path):
     page.write_text("before\n<!-- table: a (b) -->\nold\n<!-- end of table -->\nafter\n", encoding="utf-8")
     for _ in range(2):
         put_table(page, "a (b)", table(["x", "y"], [["1", "2"]]), [job("0123456789ab", 25)])
-    put = "<!-- table: a (b) -->\n\n| x | y |\n| --- | --- |\n| 1 | 2 |\n\n"
+    put = "<!-- table: a (b) -->\n\n| x | y |\n|---|---|\n| 1 | 2 |\n\n"
     before, _, rest = page.read_text(encoding="utf-8").partition(put)
     found, _, after = rest.partition("\n\n<!-- end of table -->\n")
     assert places(page) == {"a (b)"}

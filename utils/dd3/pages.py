@@ -16,7 +16,8 @@ STAMP = re.compile(r"^\*Commit (\w{7}\+?(?:, \w{7}\+?)*), (\d{4}-\d\d-\d\d), (.+
 
 def table(heading: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Return a table."""
-    return "\n".join("| " + " | ".join(row) + " |" for row in (heading, ["---"] * len(heading), *rows))
+    head, *lines = ("| " + " | ".join(row) + " |" for row in (heading, *rows))
+    return "\n".join([head, "|" + "---|" * len(heading), *lines])
 
 
 def stamp(jobs: Iterable[Mapping[str, Any]]) -> str:

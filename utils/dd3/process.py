@@ -9,14 +9,18 @@ The file lists the input files in their order; a later one takes the sheet of an
     title = "S-rail"
     [report]
     mirror = ["y"]
+    [[tool]]
+    source = "die.step"
+    toward = [0, 0, 1]
     [[operation]]
     deck = "op10.dat"
     set = { depth = 37 }
     [[operation]]
     deck = "op20.dat"
 
-Paths belong to the folder of the file that names them. Results of op10.dat go to op10.out beside it. An operation that
-has ended is not repeated unless a file that it reads has changed, the sheet that it starts from included; one that was
+Paths belong to the folder of the file that names them. A [[tool]] makes die.bez as `dd3 tool` does, with the same
+options as keys. Results of op10.dat go to op10.out beside it. A tool is not made again, and an operation that has ended
+not repeated, unless a file that it reads has changed, the sheet that it starts from included; an operation that was
 interrupted continues. The input files are checked before the first run.
 """
 import argparse
@@ -31,15 +35,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from dd3 import process_tools, verdict
 from dd3 import report as pages
-from dd3 import verdict
 from dd3.command import new_parser
 from dd3.errors import LOG, Problem, Stopped
 from dd3.programs import add_program, command, find_program, launch, made_folder
 from dd3.run import read_job
+from dd3.tools.settings import ToolSettings
 
 STAMP = "operation.json"  # in the folder of an operation: what it has read
-KEYS: dict[str, type[Any]] = {"title": str, "report": dict, "operation": list}
+KEYS: dict[str, type[Any]] = {"title": str, "report": dict, "tool": list, "operation": list}
 OPERATION_KEYS: dict[str, type[Any]] = {"deck": str, "name": str, "set": dict}
 REPORT_KEYS: dict[str, type[Any]] = {"mirror": list, "section": list}
 STOPPED = 3  # exit code of a run that cannot go on
@@ -62,12 +67,13 @@ class Operation:
 
 @dataclass
 class Process:
-    """The operations of a part, and the options of their reports."""
+    """The operations of a part, the options of their reports, and the tools to make before them."""
 
     path: Path
     title: str
     operations: list[Operation]
     report: dict[str, list[str]]
+    tools: list[ToolSettings] = field(default_factory=list)
 
 
 def refuse(path: Path, table: dict[str, Any], keys: Mapping[str, type[Any]], where: str) -> None:
@@ -75,7 +81,7 @@ def refuse(path: Path, table: dict[str, Any], keys: Mapping[str, type[Any]], whe
     for key, value in table.items():
         if key not in keys:
             raise Problem(f"{path}: error: unknown key '{key}'{where}; expected one of: {' '.join(keys)}")
-        if not isinstance(value, keys[key]):
+        if not (isinstance(value, keys[key]) or (keys[key] is float and type(value) is int)):
             raise Problem(f"{path}: error: {key}{where} is a {type(value).__name__}; expected a {keys[key].__name__}")
 
 
@@ -87,6 +93,8 @@ def read_process(path: Path) -> Process:
         raise Problem(f"{path}: error: {error}") from None
     refuse(path, table, KEYS, "")
     refuse(path, table.get("report", {}), REPORT_KEYS, " of [report]")
+    for number, row in enumerate(table.get("tool", []), 1):
+        refuse(path, row, process_tools.KEYS, f" of tool {number}")
     operations: list[Operation] = []
     for number, row in enumerate(table.get("operation", []), 1):
         where = f" of operation {number}"
@@ -101,7 +109,8 @@ def read_process(path: Path) -> Process:
             raise Problem(f"{path}: error: {operations[-1].folder} is the folder of two operations; give one a name")
     if not operations:
         raise Problem(f"{path}: error: no [[operation]]")
-    return Process(path, table.get("title", path.stem), operations, table.get("report", {}))
+    return Process(path, table.get("title", path.stem), operations, table.get("report", {}),
+                   process_tools.read_tools(path, table.get("tool", [])))
 
 
 def check_deck(program: Path, operation: Operation) -> tuple[dict[str, Any], str]:
@@ -179,7 +188,8 @@ def check_all(program: Path, process: Process) -> None:
 
 
 def run_process(program: Path, process: Process, threads: int | None = None) -> None:
-    """Run all operations."""
+    """Make the tools and run all operations."""
+    process_tools.make_tools(process.tools)
     check_all(program, process)
     for operation in process.operations:
         again = run_operation(program, operation, threads)

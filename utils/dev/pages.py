@@ -112,7 +112,9 @@ PAGES = {
     "speed": Page(5, f"src/linalg {MECHANICS}", (
         "utils/dev/benchmark.py --program {program} --write docs/reports/speed.md input_files/bending/bending.dat "
         "input_files/bending/fine.dat",
-        "tests/benchmark/speed.py --program {program} --increments 2 --write", f"tests/benchmark/peer.py{RUN}")),
+        "tests/benchmark/speed.py --program {program} --increments 2 --write",
+        "cmake --build {build} --target benchmark_material", "tests/benchmark/laws.py --build {build} --write",
+        f"tests/benchmark/peer.py{RUN}")),
     "split_ring": forming("split_ring", 8),
     "release": Page(10, f"{MECHANICS} input_files", (f"tests/forming/release.py{RUN}",)),
     "square_cup": forming("square_cup", 15),

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Make the tools of a fender-like panel, as STEP files and by `dd3 tool` as .bez files, and the curves of its trimming.
+"""Make the CAD of the tools of a fender-like panel, STEP files, and the curves of its trimming.
 
-    make_tools.py build/fender
+    make_cad.py cad
 
 Lengths in mm. The inner side of the panel is z = face(x, y) in the coordinates of the part, z upwards in the car. The
 draw is upside down; in the presses for flanging the part is tipped by TIP degrees about x, so that its wheel arch is
@@ -15,7 +15,6 @@ from pathlib import Path
 
 import numpy as np
 
-from dd3 import tool
 from dd3.errors import run
 from dd3.programs import made_folder
 from dd3.tools.solids import gmsh, write_into
@@ -316,11 +315,7 @@ def write_curves(path):
             file.write("\n")
 
 
-# What makes each tool, and the direction from it to the sheet; a closed body has its normals outwards.
-DOWN, UP = ("--toward", "0", "0", "-1"), ("--toward", "0", "0", "1")
-TOOLS = {"punch": (punch, DOWN), "die": (die, UP), "holder": (holder, DOWN), "post": (post, ()), "pad": (pad, ()),
-         "arch_steel": (arch_steel, ()), "cam": (cam, ()), "restrike_post": (restrike_post, ()),
-         "restrike_pad": (restrike_pad, ()), "restrike_steel": (restrike_steel, ())}
+TOOLS = (punch, die, holder, post, pad, arch_steel, cam, restrike_post, restrike_pad, restrike_steel)
 
 
 def main():
@@ -328,9 +323,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=made_folder, help="folder of the files")
     folder = Path(parser.parse_args().folder)
-    write_into(folder, {name: make for name, (make, _) in TOOLS.items()})
-    for name, (_, toward) in TOOLS.items():
-        tool.main([str(folder / f"{name}.step"), str(folder / f"{name}.bez"), "--tolerance", "0.01", *toward])
+    write_into(folder, {make.__name__: make for make in TOOLS})
     write_curves(folder / "trim.txt")
 
 
