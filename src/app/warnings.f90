@@ -3,7 +3,9 @@
 !> settings and meshes that make results inaccurate, loads on held directions, tools that probably
 !> are not as meant. They are not errors: a unit cube of a model material is a valid case.
 module dd3_app_warnings
-  use dd3_base_kinds, only : sqrt2, wp
+  use dd3_app_material_warnings, only : material_warnings
+  use dd3_app_unusual, only : add_unusual, outside, unusual_unit
+  use dd3_base_kinds, only : wp
   use dd3_base_error, only : location_t
   use dd3_base_message, only : message_list_t
   use dd3_base_text, only : axis_name, to_text
@@ -19,27 +21,18 @@ module dd3_app_warnings
   private
   public :: unit_warnings
 
-  !> Usual range of Young's modulus, MPa.
-  real(wp), parameter :: least_young = 1.0e3_wp, largest_young = 1.0e6_wp
-  !> Usual range of the initial flow stress divided by Young's modulus.
-  real(wp), parameter :: least_strain = 1.0e-5_wp, largest_strain = 0.1_wp
   !> Usual range of the thickness, mm.
   real(wp), parameter :: least_thickness = 1.0e-2_wp, largest_thickness = 1.0e2_wp
-  !> Usual range of the equivalent stress under unit tension in the rolling direction; 1 in most
-  !> published sets.
-  real(wp), parameter :: least_tension = 0.8_wp, largest_tension = 1.25_wp
   !> Largest usual coefficient of friction and tolerance of the corrector; smallest usual search
   !> distance of the tools, in thicknesses of the sheet.
   real(wp), parameter :: largest_friction = 1.0_wp, largest_tolerance = 0.02_wp, &
       least_search = 0.1_wp
-  !> Usual range of the density, t/mm3, and of gravity, mm/s2.
-  real(wp), parameter :: least_density = 1.0e-10_wp, largest_density = 3.0e-8_wp
+  !> Largest usual compliance of a tool, mm/MPa.
+  real(wp), parameter :: largest_compliance = 1.0e-2_wp
+  !> Usual range of gravity, mm/s2.
   real(wp), parameter :: least_gravity = 9.81e2_wp, largest_gravity = 9.81e4_wp
-  !> Usual range of r-values; a published set for a titanium alloy has 19.
-  real(wp), parameter :: least_r = 0.05_wp, largest_r = 25.0_wp
   !> Ratio of thicknesses up to which a draw-bead counts as one on a sheet of one thickness.
   real(wp), parameter :: equal_thickness = 1.02_wp
-  character(len=*), parameter :: unusual_unit = "unusual; units are N, mm and MPa"
 
 contains
 
@@ -51,31 +44,11 @@ contains
     type(model_t), intent(in) :: model
     type(message_list_t), intent(out) :: warnings
 
-    integer :: i, before
+    integer :: i
 
-    do i = 1, size(case%material)
-      associate (material => case%material(i))
-        if (outside(material%young, least_young, largest_young)) then
-          call add(warnings, "W001", material%source%at("young"), "young = "// &
-              to_text(material%young)//" MPa of material '"//material%source%called()//"'", &
-              unusual_unit)
-        end if
-        before = warnings%count
-        call check_criterion(case, model, i, warnings)
-        if (warnings%count == before) call check_r_values(case, model, i, warnings)
-        call check_flow_stress(case, model, i, warnings)
-        call check_density(case, i, warnings)
-      end associate
-    end do
+    call material_warnings(case, model, warnings)
     call check_thickness(case, model, warnings)
-    do i = 1, size(case%tool)
-      associate (tool => case%tool(i))
-        if (tool%friction > largest_friction) call add(warnings, "W005", &
-            tool%source%at("friction"), "friction = "//to_text(tool%friction)//" of tool '"// &
-            tool%source%called()//"'", &
-            "unusual; Coulomb's coefficient is below 1 in sheet metal forming")
-      end associate
-    end do
+    call check_tool_values(case, model, warnings)
     call check_gravity(case, warnings)
     call normal_warnings(case, model, warnings)
     call check_settings(case, model, warnings)
@@ -89,6 +62,36 @@ contains
     end do
   end subroutine unit_warnings
 
+  !> Warn of an unusual friction and compliance of tools.
+  subroutine check_tool_values(case, model, warnings)
+    type(case_t), intent(in) :: case
+    type(model_t), intent(in) :: model
+    type(message_list_t), intent(inout) :: warnings
+
+    character(len=:), allocatable :: what
+    type(location_t) :: at
+    real(wp) :: largest
+    integer :: i
+
+    do i = 1, size(case%tool)
+      associate (tool => case%tool(i))
+        largest = model%tool(i)%friction%largest_coefficient()
+        what = "friction = "//to_text(tool%friction)//" of tool '"//tool%source%called()//"'"
+        at = tool%source%at("friction")
+        if (largest > tool%friction) then
+          what = what//", by its friction_law up to "//to_text(largest, 3)
+          at = tool%friction_law(1)%at
+        end if
+        if (largest > largest_friction) call add_unusual(warnings, "W005", at, what, &
+            "unusual; Coulomb's coefficient is below 1 in sheet metal forming")
+        if (tool%compliance > largest_compliance) call add_unusual(warnings, "W028", &
+            tool%source%at("compliance"), "compliance = "//to_text(tool%compliance)// &
+            " mm/MPa of tool '"//tool%source%called()//"'", &
+            "unusual; dies and rings of steel have 1e-5 to 1e-3 mm/MPa")
+      end associate
+    end do
+  end subroutine check_tool_values
+
   !> Warn of an unusual thickness.
   subroutine check_thickness(case, model, warnings)
     type(case_t), intent(in) :: case
@@ -100,7 +103,7 @@ contains
     do i = 1, size(case%blank)
       associate (blank => case%blank(i))
         if (.not. outside(blank%size(3), least_thickness, largest_thickness)) cycle
-        call add(warnings, "W004", blank%source%at(trim(merge("thickness", "size     ", &
+        call add_unusual(warnings, "W004", blank%source%at(trim(merge("thickness", "size     ", &
             blank%radius > 0.0_wp))), "thickness = "//to_text(blank%size(3))// &
             " mm of blank '"//blank%source%called()//"'", unusual_unit)
       end associate
@@ -108,7 +111,7 @@ contains
     do i = 1, size(case%mesh)
       associate (mesh => case%mesh(i))
         if (.not. outside(model%thickness, least_thickness, largest_thickness)) cycle
-        call add(warnings, "W004", mesh%source%at("file"), "thickness = "// &
+        call add_unusual(warnings, "W004", mesh%source%at("file"), "thickness = "// &
             to_text(model%thickness, 4)//" mm of mesh '"//mesh%source%called()//"'", unusual_unit)
       end associate
     end do
@@ -127,12 +130,12 @@ contains
         select case (block%keyword)
         case ("newton", "contact", "phase")
           if (block%keyword /= "contact" .and. block%number("tolerance") > largest_tolerance) then
-            call add(warnings, "W006", block%at("tolerance"), "tolerance = "// &
+            call add_unusual(warnings, "W006", block%at("tolerance"), "tolerance = "// &
                 to_text(block%number("tolerance")), "forces may be inaccurate above 0.02")
           end if
           if (.not. block%has("search_distance")) cycle
           if (block%number("search_distance") >= least_search*model%thickness) cycle
-          call add(warnings, "W007", block%at("search_distance"), "search_distance = "// &
+          call add_unusual(warnings, "W007", block%at("search_distance"), "search_distance = "// &
               to_text(block%number("search_distance")), &
               "small for the thickness; nodes may pass a tool before it is found")
         case default
@@ -159,12 +162,12 @@ contains
       associate (at => case%drawbead(b)%source%opened, &
           called => "draw-bead '"//model%drawbead(b)%name//"'")
         if (covered_length(point, b) <= 0.0_wp) then
-          call add(warnings, "W012", at, called, &
+          call add_unusual(warnings, "W012", at, called, &
               "no part of its line lies on the sheet, seen along z")
           cycle
         end if
         parts = parts_under(case, model, pack(point, point%bead == b))
-        if (len(parts) > 0) call add(warnings, "W130", at, called//" crosses "//parts, &
+        if (len(parts) > 0) call add_unusual(warnings, "W130", at, called//" crosses "//parts, &
             "its force per length is the same on all of them; a bead for each gives each its own")
       end associate
     end do
@@ -231,7 +234,7 @@ contains
     call find_held_loads(model, case, found)
     do i = 1, size(found)
       associate (load => case%phase(found(i)%phase)%load(found(i)%load))
-        call add(warnings, "W008", load%at, "load along "//axis_name(found(i)%axis)//" on '"// &
+        call add_unusual(warnings, "W008", load%at, "load along "//axis_name(found(i)%axis)//" on '"// &
             load%set//"'", to_text(found(i)%held)//" of its "//to_text(found(i)%n_node)// &
             " nodes are held in this direction, and their supports carry their part of it")
       end associate
@@ -255,7 +258,7 @@ contains
         if (size(node) < 2) cycle
         if (any(model%column(1, node) /= model%column(1, node(1)))) cycle
         k = findloc([(case%boundary(i)%fix(axis), i=1, size(case%boundary))], .true., dim=1)
-        call add(warnings, "W024", case%boundary(k)%source%at("fix"), "fix = "// &
+        call add_unusual(warnings, "W024", case%boundary(k)%source%at("fix"), "fix = "// &
             axis_name(axis)//" of '"//case%boundary(k)%source%called()//"'", "the "// &
             to_text(size(node))//" nodes of one column through the thickness are held, which "// &
             "then cannot turn: tools that are withdrawn would bend the sheet around it")
@@ -278,7 +281,7 @@ contains
     if (length%n_long == 0) return
     if (size(case%blank) > 0) at = case%blank(1)%source%at("divisions")
     if (size(case%mesh) > 0) at = case%mesh(1)%source%at("file")
-    call add(warnings, "W009", at, "the elements under the tools are "// &
+    call add_unusual(warnings, "W009", at, "the elements under the tools are "// &
         span(to_text(length%shortest, 2), to_text(length%longest, 2))//" thicknesses long", &
         "where the sheet bends, its moment is "//span(excess(length%shortest), &
         excess(length%longest))//" % too high; expected at most half a thickness there, 3 %")
@@ -301,125 +304,6 @@ contains
     text = to_text(nint(100*excess_moment(length)))
     if (length > longest_known) text = "more than "//text
   end function excess
-
-  !> Warn if the yield stress in the rolling direction is far from the flow stress.
-  subroutine check_criterion(case, model, i, warnings)
-    type(case_t), intent(in) :: case
-    type(model_t), intent(in) :: model
-    !> Number of the material.
-    integer, intent(in) :: i
-    type(message_list_t), intent(inout) :: warnings
-
-    real(wp), parameter :: tension(6) = [1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
-    real(wp) :: equivalent
-
-    equivalent = model%material(i)%laws%criterion%value(tension)
-    if (.not. outside(equivalent, least_tension, largest_tension)) return
-    call add(warnings, "W002", case%material(i)%yield%at, "material '"// &
-        case%material(i)%source%called()//"' yields in the rolling direction at "// &
-        to_text(1/equivalent, 3)//" times the flow stress of its hardening law", &
-        "unusual; are these the parameters of "//case%material(i)%yield%name//"?")
-  end subroutine check_criterion
-
-  !> Warn if the initial flow stress is unusually large or small compared with Young's modulus.
-  subroutine check_flow_stress(case, model, i, warnings)
-    type(case_t), intent(in) :: case
-    type(model_t), intent(in) :: model
-    !> Number of the material.
-    integer, intent(in) :: i
-    type(message_list_t), intent(inout) :: warnings
-
-    real(wp) :: start(model%material(i)%n_internal), stress
-
-    start = 0.0_wp
-    stress = model%material(i)%flow_stress(start)
-    if (.not. outside(stress, least_strain*case%material(i)%young, &
-        largest_strain*case%material(i)%young)) return
-    call add(warnings, "W003", case%material(i)%hardening%at, "initial flow stress = "// &
-        to_text(stress, 4)//" MPa of material '"//case%material(i)%source%called()// &
-        "', young = "//to_text(case%material(i)%young)//" MPa", unusual_unit)
-  end subroutine check_flow_stress
-
-  !> Warn of r-values that are most often per cent, or the parameters of another law.
-  subroutine check_r_values(case, model, i, warnings)
-    type(case_t), intent(in) :: case
-    type(model_t), intent(in) :: model
-    !> Number of the material.
-    integer, intent(in) :: i
-    type(message_list_t), intent(inout) :: warnings
-
-    character(len=*), parameter :: name(3) = ["r0 ", "r45", "r90"]
-    character(len=:), allocatable :: remark
-    type(location_t) :: at
-    real(wp) :: r(3)
-    integer :: k, p
-
-    r = [(r_value(model, i, 45*(k - 1)), k=1, 3)]
-    if (all(r >= least_r .and. r <= largest_r)) return
-    associate (law => case%material(i)%yield)
-      at = law%at
-      do p = size(law%parameter), 1, -1
-        k = findloc(name == law%parameter(p)%key, .true., dim=1)
-        if (k == 0) cycle
-        if (outside(r(k), least_r, largest_r)) at = law%parameter(p)%at
-      end do
-    end associate
-    remark = "unusual; they are ratios of the strains along width and thickness"
-    k = maxloc(r, dim=1)
-    if (r(k) > largest_r .and. r(k) < 100*largest_r) remark = remark//", not per cent: "// &
-        to_text(r(k)/100, 4)//" for "//to_text(r(k), 4)//"?"
-    call add(warnings, "W021", at, "material '"//case%material(i)%source%called()// &
-        "' has the r-values "//to_text(r(1), 4)//", "//to_text(r(2), 4)//", "//to_text(r(3), 4)// &
-        " at 0, 45, 90 degrees from the rolling direction", remark)
-  end subroutine check_r_values
-
-  !> Return the r-value of a material in tension: the ratio of the plastic strains along the width
-  !> and the thickness.
-  real(wp) function r_value(model, i, angle)
-    type(model_t), intent(in) :: model
-    !> Number of the material, and angle from the rolling direction, degrees: 0, 45 or 90.
-    integer, intent(in) :: i, angle
-
-    real(wp) :: c, s, stress(6), normal(6), value
-
-    c = merge(sqrt2/2, merge(1.0_wp, 0.0_wp, angle == 0), angle == 45)
-    s = merge(sqrt2/2, merge(1.0_wp, 0.0_wp, angle == 90), angle == 45)
-    stress = [c**2, s**2, 0.0_wp, 0.0_wp, 0.0_wp, sqrt2*s*c]
-    call model%material(i)%laws%criterion%gradient(stress, value, normal)
-    r_value = huge(1.0_wp)
-    if (abs(normal(3)) > tiny(1.0_wp)) then
-      r_value = (s**2*normal(1) + c**2*normal(2) - sqrt2*s*c*normal(6))/normal(3)
-    end if
-  end function r_value
-
-  !> Warn of an unusual density.
-  subroutine check_density(case, i, warnings)
-    type(case_t), intent(in) :: case
-    !> Number of the material.
-    integer, intent(in) :: i
-    type(message_list_t), intent(inout) :: warnings
-
-    !> Other units in t/mm3.
-    real(wp), parameter :: factor(3) = [1.0e-3_wp, 1.0e-9_wp, 1.0e-12_wp]
-    character(len=*), parameter :: unit(3) = ["kg/mm3", "g/cm3 ", "kg/m3 "]
-    character(len=:), allocatable :: remark
-    integer :: k
-
-    associate (material => case%material(i))
-      if (material%density <= 0.0_wp) return
-      if (.not. outside(material%density, least_density, largest_density)) return
-      remark = "unusual; the unit is t/mm3, 7.85e-9 for steel"
-      do k = size(factor), 1, -1
-        if (outside(factor(k)*material%density, least_density, largest_density)) cycle
-        remark = remark//"; given in "//trim(unit(k))//"? then it is "// &
-            to_text(factor(k)*material%density, 4)
-        exit
-      end do
-      call add(warnings, "W022", material%source%at("density"), "density = "// &
-          to_text(material%density, 4)//" t/mm3 of material '"//material%source%called()//"'", &
-          remark)
-    end associate
-  end subroutine check_density
 
   !> Warn of an unusual acceleration of gravity.
   subroutine check_gravity(case, warnings)
@@ -445,29 +329,9 @@ contains
         remark = remark//"; given in "//trim(unit(k))//"?"
         exit
       end do
-      call add(warnings, "W023", case%phase(i)%source%at("gravity"), "gravity of "// &
+      call add_unusual(warnings, "W023", case%phase(i)%source%at("gravity"), "gravity of "// &
           to_text(size_of, 4)//" mm/s2", remark)
     end do
   end subroutine check_gravity
-
-  !> Whether a value lies outside its bounds.
-  pure logical function outside(value, lower, upper)
-    real(wp), intent(in) :: value, lower, upper
-
-    outside = value < lower .or. value > upper
-  end function outside
-
-  !> Add a warning.
-  subroutine add(warnings, code, at, what, remark)
-    type(message_list_t), intent(inout) :: warnings
-    character(len=*), intent(in) :: code
-    !> Location of the value.
-    type(location_t), intent(in) :: at
-    !> The value with its unit and owner.
-    character(len=*), intent(in) :: what
-    character(len=*), intent(in) :: remark
-
-    call warnings%add_new(code, what//": "//remark, at)
-  end subroutine add
 
 end module dd3_app_warnings

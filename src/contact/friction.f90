@@ -46,6 +46,7 @@ module dd3_contact_friction
     procedure :: add_law
     procedure :: varies
     procedure :: needs_time
+    procedure :: largest_coefficient
     procedure :: limit
     procedure :: numbers
   end type friction_t
@@ -99,7 +100,7 @@ contains
     allocate (law(3)%rows, source=[ &
       row("v0", kind_real, "mm/s", "", "speed at which the decrease has reached 63 %", 0.0_wp, &
           lower_open=.true.), &
-      row("r", kind_real, "", "", "factor at high speeds; it is 1 at rest", 0.0_wp, &
+      row("r", kind_real, "", "", "factor at high speeds; it is 1 at rest", 0.0_wp, 1.0_wp, &
           lower_open=.true.), &
       row("n", kind_real, "", "1", "exponent", 1.0_wp)])
     law(4) = table_law("speed_table", "speed", "mm/s")
@@ -194,6 +195,29 @@ contains
 
     varies = allocated(self%factor)
   end function varies
+
+  !> Return the largest coefficient, at pressures up to 1000 MPa.
+  pure real(wp) function largest_coefficient(self) result(largest)
+    class(friction_t), intent(in) :: self
+
+    real(wp), parameter :: high_pressure = 1000.0_wp
+    real(wp) :: factor(2), slope
+    integer :: i
+
+    largest = self%coefficient
+    if (.not. allocated(self%factor)) return
+    do i = 1, size(self%factor)
+      associate (law => self%factor(i))
+        if (allocated(law%value)) then
+          largest = largest*maxval(law%value)
+        else
+          call evaluate(law, law%least, factor(1), slope)
+          call evaluate(law, high_pressure, factor(2), slope)
+          largest = largest*maxval(factor)
+        end if
+      end associate
+    end do
+  end function largest_coefficient
 
   !> Whether the coefficient depends on the speed.
   pure logical function needs_time(self)

@@ -203,7 +203,8 @@ contains
         call errors%push_input(given%key_at, "unknown parameter '"//given%key//"' of "// &
             spec%name//suggestion(given%key, rows%name), known, code="E112")
       else if (find_parameter(spec, given%key) < i .and. .not. rows(k)%repeatable) then
-        call errors%push_input(given%key_at, "'"//given%key//"' is given twice", code="E122")
+        call errors%push_input(given%key_at, "'"//given%key//"' is given twice", &
+            "one of: "//join(rows%name, " ")//", each once, in upper or lower case", code="E122")
       else if (given%text == "") then
         call errors%push_input(given%at, "no value is given for '"//given%key//"'", &
             trim(rows(k)%name)//"="//trim(merge("path  ", "number", rows(k)%kind == kind_text))// &

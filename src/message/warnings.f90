@@ -74,7 +74,21 @@ contains
       row("W024", "support of a single column", &
           "A direction is held at nodes of one column through the thickness only, and tools "// &
           "are withdrawn: the column cannot turn with the sheet.", "One node of the column in "// &
-          "the set, or a row of columns, such as a plane of symmetry.")]
+          "the set, or a row of columns, such as a plane of symmetry."), &
+      row("W025", "unusual modulus after plastic strain", &
+          "By the law `modulus` less than 0.4 of Young's modulus is left, or more than it.", &
+          "Check the law: its moduli are in MPa."), &
+      row("W026", "unusual law of the strain rate", &
+          "At 1 /s it multiplies the flow stress by more than 3.", &
+          "Check its parameters: rates are in 1/s."), &
+      row("W027", "unusual law of the temperature", &
+          "It does not act up to 250 degrees above `initial_temperature`, or it raises the "// &
+          "flow stress.", &
+          "One scale for the law and `initial_temperature`, which is 20 by default: kelvin "// &
+          "or degrees Celsius."), &
+      row("W028", "unusual compliance of a tool", &
+          "It lies above 0.01 mm/MPa: the tool deflects by 1 mm at 100 MPa.", &
+          "Check `compliance`, mm/MPa, against the geometry of the tool.")]
   end function input_warnings
 
   !> Return the warnings during a run.

@@ -41,6 +41,8 @@ module dd3_point_run
     integer :: every = 1
     !> The last row was not due and is not written yet.
     logical :: waiting = .false.
+    !> Steps in which fracture and the forming limit were reached; 0 if they were not.
+    integer :: fractured = 0, necked = 0
   end type point_run_t
 
 contains
@@ -103,9 +105,14 @@ contains
       strain = max(strain, maxval(abs(run%state%strain/kelvin_factor)))
     end do
     if (.not. allocated(error)) then
-      call log%say("point "//path%name//": "//to_text(run%increment)//" steps")
+      call log%say("point "//path%name//": "//to_text(run%increment)//" steps"// &
+          limits_text(run, model%material(path%material)))
     end if
     log%increment = run%increment
+    if (run%fractured > 0) call log%report("W126", "point "//path%name// &
+        ": fracture is reached in step "//to_text(run%fractured))
+    if (run%necked > 0) call log%report("W127", "point "//path%name// &
+        ": the forming limit is reached in step "//to_text(run%necked))
     if (strain > notable_strain) call log%report("W113", "point "//path%name// &
         ": logarithmic strain of "//to_text(strain, 4)//": unusual; 0.1 is about 10 %")
     if (run%waiting) call write_row(run, model, path, record, late)
@@ -144,6 +151,7 @@ contains
       end if
       run%increment = run%increment + 1
       run%time = run%time + segment%time
+      call find_limits(run, model%material(path%material))
       run%waiting = mod(run%increment, run%every) /= 0
       if (.not. run%waiting) call write_row(run, model, path, record, error)
       if (allocated(error)) return
@@ -154,6 +162,35 @@ contains
       end if
     end do
   end subroutine run_segment
+
+  !> Find whether fracture and the forming limit are reached.
+  subroutine find_limits(run, material)
+    type(point_run_t), intent(inout) :: run
+    type(material_t), intent(in) :: material
+
+    associate (laws => material%laws, variables => run%state%internal_variables)
+      if (laws%at_damage > 0 .and. run%fractured == 0) then
+        if (variables(laws%at_damage) >= 1.0_wp) run%fractured = run%increment
+      end if
+      if (laws%at_forming_limit > 0 .and. run%necked == 0) then
+        if (variables(laws%at_forming_limit) >= 1.0_wp) run%necked = run%increment
+      end if
+    end associate
+  end subroutine find_limits
+
+  !> Return damage and ratio to the forming limit as text; empty without such laws.
+  function limits_text(run, material) result(text)
+    type(point_run_t), intent(in) :: run
+    type(material_t), intent(in) :: material
+    character(len=:), allocatable :: text
+
+    text = ""
+    associate (laws => material%laws, variables => run%state%internal_variables)
+      if (laws%at_damage > 0) text = text//", damage "//to_text(variables(laws%at_damage), 3)
+      if (laws%at_forming_limit > 0) text = text//", ratio to the forming limit "// &
+          to_text(variables(laws%at_forming_limit), 3)
+    end associate
+  end function limits_text
 
   !> Bring a material point to a deformation gradient.
   subroutine apply_gradient(run, material, gradient, time, verdict)

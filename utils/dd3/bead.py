@@ -110,6 +110,9 @@ def main(words: Sequence[str] | None = None) -> None:
           f"{2 * bead.half:g} mm apart; friction {bead.friction:g}")
     if material.has_rate:
         print("the strain rate is not followed: the flow stress is that of a slow test")
+    if min(bead.radius, bead.shoulder) < t:
+        print("a radius is smaller than the thickness: sheets crack there, and the layers' strains are too large for "
+              "the model")
     if options.friction is None and any(block.value("friction_law") for block in tools):
         print("friction_law is not followed: the coefficient is `friction`")
     print(*("  ".join(cell.rjust(width) for cell, width in zip(cells, widths)) for cells in rows), sep="\n")

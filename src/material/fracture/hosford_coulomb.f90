@@ -35,7 +35,7 @@ contains
       row("a", kind_real, "", "", "exponent of Hosford's stress; 2: von Mises, 1: Tresca", &
           1.0_wp, 20.0_wp), &
       row("b", kind_real, "", "", "strain to fracture in uniaxial and in equibiaxial tension", &
-          0.0_wp, lower_open=.true.), &
+          0.0_wp, 10.0_wp, lower_open=.true.), &
       row("c", kind_real, "", "", "friction of Coulomb: dependence on the triaxiality", 0.0_wp), &
       row("n", kind_real, "", "0.1", "exponent of the transformation to strains", 0.0_wp, 1.0_wp, &
           lower_open=.true.)])

@@ -23,6 +23,9 @@ module dd3_material_fracture_table
     real(wp), allocatable :: place(:), value(:)
   end type block_t
 
+  !> Largest triaxiality and strain to fracture; larger values are in per cent.
+  real(wp), parameter :: largest = 10.0_wp
+
   type, extends(fracture_t) :: table_t
     private
     type(block_t), allocatable :: block(:)
@@ -67,7 +70,7 @@ contains
   end subroutine describe
 
   !> Require a Lode angle for each block, Lode angles that rise, and two points or more of each
-  !> block, with triaxialities that rise.
+  !> block, with triaxialities that rise, none in per cent.
   subroutine check(values, problems)
     type(law_value_t), intent(in) :: values(:)
     type(problem_t), allocatable, intent(inout) :: problems(:)
@@ -90,6 +93,10 @@ contains
     do k = 1, size(first) - 1
       call check_block(values, point(first(k):first(k + 1) - 1), problems)
     end do
+    k = findloc(abs(values(point)%abscissa) > largest .or. values(point)%value > largest, .true., &
+        dim=1)
+    if (k > 0) call add_problem(problems, point(k), "a triaxiality or a strain to fracture above "// &
+        to_text(largest), "fractions, not per cent")
   end subroutine check
 
   !> Check the points of a block.
