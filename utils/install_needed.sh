@@ -5,7 +5,7 @@
 #
 #   utils/install_needed.sh              all of it
 #   utils/install_needed.sh --no-python  without .venv
-#   utils/install_needed.sh --browser    also chromium, in which the test utils_browser opens a page of `dd3 report`
+#   utils/install_needed.sh --browser    also what the tests use beside it: chromium, ruff, mypy, fortitude, codespell
 #   utils/install_needed.sh --help       this text; nothing is installed
 set -euo pipefail
 cd -P "$(dirname "$0")/.."
@@ -52,17 +52,21 @@ install_packages() {
 # What the package needs is installed, with its commands, and the sources are put on the path of Python: their changes
 # need no further installation. The environment is created again if the requirements have changed.
 install_python() {
-  local python=/usr/bin/python3 wanted
+  local python=/usr/bin/python3 extras=test wanted found
   [ -x "$python" ] || python=python3
+  [ "${1:-}" != --browser ] || extras=test,dev
   wanted=$(cksum <pyproject.toml)
-  [ "$(cat .venv/pyproject.cksum 2>/dev/null)" = "$wanted" ] && return 0
+  found=$(cat .venv/pyproject.cksum 2>/dev/null) || found=
+  [ "$found" = "$wanted $extras" ] || [ "$found" = "$wanted test,dev" ] && return 0
   echo "== installing what the Python package utils/dd3 needs into .venv"
-  rm -rf .venv
-  "$python" -m venv .venv
-  DD3_CLONE=1 .venv/bin/pip install -q --disable-pip-version-check ".[test]"
+  if [ "$found" != "$wanted test" ]; then
+    rm -rf .venv
+    "$python" -m venv .venv
+  fi
+  DD3_CLONE=1 .venv/bin/pip install -q --disable-pip-version-check ".[$extras]"
   echo "$PWD/utils" >"$(.venv/bin/python3 -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/dd3.pth"
-  echo "$wanted" >.venv/pyproject.cksum
+  echo "$wanted $extras" >.venv/pyproject.cksum
 }
 
 install_packages
-[ "${1:-}" = --no-python ] || install_python
+[ "${1:-}" = --no-python ] || install_python "$@"

@@ -234,8 +234,8 @@ contains
     call find_held_loads(model, case, found)
     do i = 1, size(found)
       associate (load => case%phase(found(i)%phase)%load(found(i)%load))
-        call add_unusual(warnings, "W008", load%at, "load along "//axis_name(found(i)%axis)//" on '"// &
-            load%set//"'", to_text(found(i)%held)//" of its "//to_text(found(i)%n_node)// &
+        call add_unusual(warnings, "W008", load%at, "load along "// &
+            axis_name(found(i)%axis)//" on '"//load%set//"'", to_text(found(i)%held)//" of its "//to_text(found(i)%n_node)// &
             " nodes are held in this direction, and their supports carry their part of it")
       end associate
     end do

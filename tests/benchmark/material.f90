@@ -65,8 +65,8 @@ contains
     choice(k) = law
     allocate (back(merge(1, 0, kinds(k) == law_backstress)))
     if (size(back) > 0) back(1) = law
-    call new_material(material, 2.1e5_wp, 0.3_wp, choice(1), choice(2), back, choice(4), choice(5), &
-        choice(6))
+    call new_material(material, 2.1e5_wp, 0.3_wp, choice(1), choice(2), back, choice(4), &
+        choice(5), choice(6))
     do n = 1, size(sizes)
       call time_updates(material, sizes(n), .true., plastic_time(n), iterations(n))
     end do

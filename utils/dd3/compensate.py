@@ -92,7 +92,7 @@ def tool_places(folder: Path, job: dict[str, Any], sheet: Sheet, step: int) -> d
     if len(set(files)) < len(files):
         raise Problem(f"{folder}: two tools have the same file; expected one for each")
     history = read_frame(folder, "history.csv")
-    if any(abs(history[name]).max() > 0 for name in history if name.endswith("_angle")):
+    if any(abs(history[name]).max() > 0 for name in map(str, history.columns) if name.endswith("_angle")):
         raise Problem(f"{folder}: a tool turns; expected tools that are moved or pressed")
     phase = job["phases"][int(sheet.file["job"]["phase"][step]) - 1]["name"]
     row = history[history["phase"] == phase].iloc[-1]

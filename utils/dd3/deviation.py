@@ -332,8 +332,8 @@ def judged(fixture: Fixture, found: Deviations) -> list[verdict.Item]:
     items = [item_of("part", found.distance, fixture.limits)]
     for name, deviation, *limits in found.points[["name", "deviation", "lower", "upper"]].itertuples(index=False):
         items.append(item_of(f"point {name}", np.array([deviation]), None if np.isinf(limits[0]) else tuple(limits)))
-    for name, table in found.sections.groupby("section", sort=False):
-        items.append(item_of(f"section {name}", table["deviation"].to_numpy(), fixture.limits))
+    for section, table in found.sections.groupby("section", sort=False):
+        items.append(item_of(f"section {section!s}", table["deviation"].to_numpy(), fixture.limits))
     return items
 
 

@@ -173,8 +173,7 @@ def compared(course: pd.DataFrame, crank: Crank | None, options: argparse.Namesp
         course["angle"] = np.degrees(crank.angle(height))
     if crank and options.force:
         course["allowed"] = crank.allowed(height, options.force, options.rated)
-        worst = (course["force"] / course["allowed"]).idxmax()
-        row = course.loc[worst]
+        row = course.iloc[int((course["force"] / course["allowed"]).to_numpy().argmax())]
         text = f"{row['force']:.4g} of {row['allowed']:.4g} kN at {row['height']:.4g} mm"
         print(f"nearest to the force that the press allows: {text}")
         over += [f"force: {text}"] * bool(row["force"] > row["allowed"])

@@ -108,8 +108,8 @@ def slides(phases: Sequence[Ended]) -> list[Item]:
     warned = {punch["tool"] for phase, punch in slid if "W124" in phase.codes}
     last = {punch["tool"]: punch["slide"] for _, punch in slid}
     return [Item("slide", DOUBTFUL if tool in warned else GOOD,
-                 f"the sheet has moved across the path of '{tool}' under its level faces by {place['distance']:.2g} mm "
-                 f"or more, least {at(place)}")
+                 f"the sheet under the level faces of '{tool}' has slid by {place['distance']:.2g} mm or more, least "
+                 f"{at(place)}")
             for tool, place in last.items()]
 
 

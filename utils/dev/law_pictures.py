@@ -166,7 +166,7 @@ def lemaitre_chaboche(program, law, figure):
         axes[0].plot(*columns(points[name], "e11", "s11"), label=name)
         axes[1].plot(*columns(points[f"shear_{name}"], "e12", "s12"))
     axes[0].set(xlabel="logarithmic strain", ylabel="stress (MPa)", title="tension, compression")
-    axes[1].set(xlabel="shear strain e12", ylabel="shear stress (MPa)", title="shear to and fro")
+    axes[1].set(xlabel="shear strain e12", ylabel="shear stress (MPa)", title="shear, reversed")
     legend(axes[0], title="back-stresses")
 
 

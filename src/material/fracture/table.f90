@@ -95,8 +95,8 @@ contains
     end do
     k = findloc(abs(values(point)%abscissa) > largest .or. values(point)%value > largest, .true., &
         dim=1)
-    if (k > 0) call add_problem(problems, point(k), "a triaxiality or a strain to fracture above "// &
-        to_text(largest), "fractions, not per cent")
+    if (k > 0) call add_problem(problems, point(k), &
+        "a triaxiality or a strain to fracture above "//to_text(largest), "fractions, not per cent")
   end subroutine check
 
   !> Check the points of a block.

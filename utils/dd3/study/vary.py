@@ -159,8 +159,8 @@ def value_of(folder: Path, name: str, fold: str) -> tuple[float, str]:
     stem = name.partition(":")[0]
     at_cells = stem in fields.grid["CellData"]
     if not at_cells and stem not in fields.grid["PointData"]:
-        raise Problem(f"no result '{name}'; there are the columns {', '.join(history)} and the fields "
-                      f"{', '.join(fields.grid['CellData'])}")
+        raise Problem(f"no result '{name}'; there are the columns {', '.join(map(str, history.columns))} and the "
+                      f"fields {', '.join(fields.grid['CellData'])}")
     if fold == "last":
         raise Problem(f"{name}:last: a field is taken at the end; expected :max, :min or :mean")
     values, label = fields.component(fields.last, name, at_cells)
