@@ -235,7 +235,8 @@ contains
     do i = 1, size(found)
       associate (load => case%phase(found(i)%phase)%load(found(i)%load))
         call add_unusual(warnings, "W008", load%at, "load along "// &
-            axis_name(found(i)%axis)//" on '"//load%set//"'", to_text(found(i)%held)//" of its "//to_text(found(i)%n_node)// &
+            axis_name(found(i)%axis)//" on '"//load%set//"'", &
+            to_text(found(i)%held)//" of its "//to_text(found(i)%n_node)// &
             " nodes are held in this direction, and their supports carry their part of it")
       end associate
     end do
