@@ -48,6 +48,14 @@ def shown(page, script):
     return page.locator("#view").screenshot(path=page.folder / "view.png")
 
 
+def test_names(page):
+    """Check that a screen reader has a name for each control and each picture."""
+    named = """e => e.labels?.length || e.ariaLabel || e.alt || (e.tagName == "BUTTON" && e.textContent.trim())"""
+    nameless = page.evaluate(f"""() => [...document.querySelectorAll("select, input, button, canvas, img")]
+        .filter(e => !({named})(e)).map(e => e.outerHTML.slice(0, 80))""")
+    assert not nameless
+
+
 def test_step_and_tool(page):
     """Check that slider, field, tool and mesh lines change the picture, and come back."""
     assert not page.locator("#tool_punch").is_checked()  # it would cover the part

@@ -47,7 +47,11 @@ def test_run(program, deck, tmp_path):
     assert page == tmp_path / "page" / "report.html" and "Thickness along sections" in page.read_text()
     for act, said in ((lambda: run.plot("heat"), "no picture 'heat'; there are: force increments"),
                       (lambda: run.plot("sheet", view="nowhere"), "--view takes one of"),
-                      (lambda: run.verdict(thinning=20), "a fraction between 0 and 1"), (run.plot, "there is no tool")):
+                      (lambda: run.verdict(thinning=20), "a fraction between 0 and 1"),
+                      (lambda: run.verdict(waves="x"), "take a positive number"),
+                      (lambda: run.verdict(mirror="q"), "mirror takes planes of symmetry"),
+                      (lambda: dd3.simulate("job.dat", threads="two"), "threads takes a number"),
+                      (run.plot, "there is no tool")):
         with pytest.raises(dd3.Problem, match=said):
             act()
 

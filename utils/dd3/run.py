@@ -135,7 +135,7 @@ class Run:
         phase does not release all tools. mirror: planes of symmetry of the model, such as "xy"."""
         from dd3.sheet import Sheet
         from dd3.springback import find
-        return find(Sheet(self.folder), self.job["phases"], sorted(set("".join(mirror))))
+        return find(Sheet(self.folder), self.job["phases"], planes_of(mirror))
 
     def verdict(self, *, mirror: Sequence[str] = (), waves: float | None = None, tolerance: float | None = None,
                 **criteria: Any) -> "list[Item]":
@@ -147,6 +147,7 @@ class Run:
         """
         from dd3 import forming_limit, verdict
         from dd3.sheet import Sheet
+        check_limits(waves, tolerance)
         sheet, limit = Sheet(self.folder), forming_limit.Criteria(**criteria)
         limits = forming_limit.find_limits(sheet, self.job, limit)
         strains = forming_limit.strains_of(sheet, sheet.last, "middle")
@@ -154,6 +155,20 @@ class Run:
         splits = verdict.splits(found.critical, found.said, strains.largest_thinning() > limits.thinning)
         return verdict.judge(self.job, waves, splits,
                              verdict.sprung(float(sprung.distance().max()) if sprung else None, tolerance))
+
+
+def planes_of(mirror: Sequence[str]) -> list[str]:
+    """Return the planes of symmetry that the letters of `mirror` name, x, y or z, in this order."""
+    found = sorted(set("".join(mirror)))
+    if set(found) - set("xyz"):
+        raise Problem(f"mirror takes planes of symmetry, such as 'x' or 'xy', not '{''.join(mirror)}'")
+    return found
+
+
+def check_limits(waves: object, tolerance: object) -> None:
+    """Check the limits of a verdict, mm; each may be None."""
+    if any(limit is not None and not (isinstance(limit, (int, float)) and limit > 0) for limit in (waves, tolerance)):
+        raise Problem("--waves and --tolerance take a positive number")
 
 
 def read_frame(run: str | Path, name: str = "history.csv", *needed: str) -> "pd.DataFrame":

@@ -36,6 +36,8 @@ def simulate(deck: str | Path | Deck, set: Mapping[str, Any] | None = None, *, t
         if deck.path is None or deck.changed:
             raise Problem("the input file was changed since it was read: write it first, by deck.write(path)")
         deck = deck.path
+    if threads is not None and (not isinstance(threads, int) or threads < 1):
+        raise Problem(f"threads takes a number of at least 1, not {threads!r}")
     deck = Path(deck)
     folder = Path(output) if output else deck.with_suffix(".out")
     options: list[object] = ["--quiet", *(["--threads", threads] if threads else []),

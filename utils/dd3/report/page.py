@@ -11,12 +11,11 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from dd3 import rendering, verdict
-from dd3.errors import Problem
 from dd3.forming_limit import Criteria
 from dd3.plot import sheet as pictures
 from dd3.plot.figures import save
 from dd3.programs import made_folder
-from dd3.run import read_frame
+from dd3.run import check_limits, planes_of, read_frame
 from dd3.sheet import AXES, Sheet
 from dd3.tables import tools_in
 from dd3.viewer import page as interactive
@@ -39,9 +38,8 @@ class Report:
                  measured: Sequence[str | Path] = (), waves: float | None = None, tolerance: float | None = None,
                  output: str | Path | None = None, criteria: Criteria | None = None,
                  fixture: Path | None = None) -> None:
-        if any(limit is not None and not limit > 0 for limit in (waves, tolerance)):
-            raise Problem("--waves and --tolerance take a positive number")
-        self.mirror, self.sections, self.measured = sorted(set("".join(mirror))), list(section), measured
+        check_limits(waves, tolerance)
+        self.mirror, self.sections, self.measured = planes_of(mirror), list(section), measured
         self.waves, self.tolerance, self.criteria = waves, tolerance, criteria or Criteria()
         self.fixture = fixture
         self.sheet = Sheet(run)

@@ -109,6 +109,8 @@ for (const box of document.querySelectorAll("[data-curves]")) {
   for (const axes of figure) {
     const place = document.createElement("div"),
       canvas = document.createElement("canvas");
+    canvas.setAttribute("role", "img");
+    canvas.setAttribute("aria-label", `${axes.y} over ${axes.x}`);
     place.append(canvas);
     row.append(place);
     const chart = newChart(canvas, axes.x, axes.y, { equal: axes.equal });

@@ -19,6 +19,8 @@ class Stage {
     this.renderer = new library.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.localClippingEnabled = true;
+    this.renderer.domElement.setAttribute("role", "img");
+    this.renderer.domElement.setAttribute("aria-label", "the sheet and its tools");
     this.view.prepend(this.renderer.domElement);
     this.world = new library.Scene();
     this.world.background = new library.Color("white");
