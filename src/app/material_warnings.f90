@@ -126,7 +126,7 @@ contains
     associate (material => case%material(i), law => model%material(i)%laws%temperature%law)
       call law%factor(material%initial_temperature, start, slope)
       do k = 1, n
-        call law%factor(material%initial_temperature + step*k, factor(k), slope)
+        call law%factor(material%initial_temperature + step*real(k, wp), factor(k), slope)
       end do
       what = "law of the temperature of material '"//material%source%called()//"'"
       if (.not. any(abs(factor(:nint(warm/step)) - start) > 0.0_wp)) then
@@ -137,7 +137,7 @@ contains
       else if (maxval(factor) > largest_increase*start) then
         call add_unusual(warnings, "W027", material%temperature%at, what// &
             " raises the flow stress by the factor "//to_text(maxval(factor)/start, 3)//" at "// &
-            to_text(material%initial_temperature + step*maxloc(factor, dim=1)), &
+            to_text(material%initial_temperature + step*real(maxloc(factor, dim=1), wp)), &
             "unusual; metals soften when they are heated")
       end if
     end associate

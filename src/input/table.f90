@@ -7,8 +7,8 @@ module dd3_input_table
   use dd3_input_case, only : blank_sets
   use dd3_input_keys, only : blank_keys, region_keys, mesh_keys, start_keys, trim_keys, set_keys, &
       material_keys, tool_keys, drawbead_keys, contact_keys, boundary_keys, limits_keys, &
-      newton_keys, solver_keys, &
-      phase_keys, history_keys, output_keys, point_keys
+      newton_keys, solver_keys, history_keys, output_keys, point_keys
+  use dd3_input_phase_keys, only : phase_keys
   implicit none
   private
   public :: block_row_t, block_table, find_block, find_key, axis_of

@@ -6,7 +6,7 @@ module dd3_model_contact_results
   use dd3_base_ranks, only : broadcast_reals, largest_over_ranks, rank_of_smallest, sum_over_ranks
   use dd3_contact_operator, only : status_gap
   use dd3_model_contact_layer, only : border_at, deflection_at
-  use dd3_model_contact_points, only : nodal_areas, point_areas
+  use dd3_model_contact_areas, only : nodal_areas, point_areas
   use dd3_model_model, only : model_t
   use dd3_model_outward_normals, only : nodal_normals, outward_normals
   use dd3_model_state, only : state_t

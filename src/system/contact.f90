@@ -6,7 +6,7 @@ module dd3_system_contact
   use dd3_base_ranks, only : any_rank
   use dd3_contact_operator, only : round_off, status_gap
   use dd3_model_contact_layer, only : contact_penalty
-  use dd3_model_contact_points, only : contact_areas
+  use dd3_model_contact_areas, only : contact_areas
   use dd3_model_contact_strain, only : strains_below
   use dd3_model_model, only : model_t
   use dd3_model_outward_normals, only : outward_normals

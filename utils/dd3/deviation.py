@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
-from dd3 import verdict
+from dd3 import deviation_pictures, verdict
 from dd3.alignment import STILL, Equations, Rigid, aligned, free_motions, kabsch
 from dd3.command import new_parser
 from dd3.errors import LOG, Problem
@@ -36,8 +36,6 @@ from dd3.nominal import (
     sheet_surface,
     turned_to,
 )
-from dd3.plot import sheet as pictures
-from dd3.plot.figures import new_figure, save
 from dd3.programs import made_folder
 from dd3.run import read_frame, read_job
 from dd3.sheet import AXES, LOWER, UPPER, Sheet, length, plane
@@ -46,8 +44,6 @@ from dd3.springback import best_fit, steps_with_tools
 BORDER = 0.25  # largest distance beside the border of the nominal shape at which a node is compared, over the thickness
 FAR = 5.0  # largest distance of a place of the file from the nominal shape, mm
 TANGENT = 0.2  # cosine between the direction of a locator and the normal of the part below which it is refused
-IN, ABOVE, BELOW = "#009e73", "#d55e00", "#8b1a1a"  # within the tolerance, above and below it
-SHADES = 256  # of the map
 
 
 class Face(NamedTuple):
@@ -366,44 +362,6 @@ def compare(run: str | Path, fixture: Fixture, at: str | None = None) -> Deviati
     return Comparison(fixture, sheet, step).deviations(clamped)
 
 
-def colours(low: float, high: float, limits: tuple[float, float]) -> list[str]:
-    """Return the colours of a map from its lower to its upper end: green within the tolerance, red outside."""
-    values = np.linspace(low, high, SHADES)
-    return [BELOW if value < limits[0] else ABOVE if value > limits[1] else IN for value in values]
-
-
-def draw_map(found: Deviations, fixture: Fixture, path: Path) -> None:
-    """Draw the deviations on the part at its nominal place."""
-    part = found.part
-    mesh = part.sheet.grid_of(part.step, found.motion.of(part.sheet.points(part.step)))
-    corners = part.sheet.corners(part.step)
-    deviation = np.full(mesh.n_points, np.nan)
-    deviation[part.nodes] = found.distance
-    mine, other = (UPPER, LOWER) if fixture.upper else (LOWER, UPPER)
-    deviation[corners[:, other]] = deviation[corners[:, mine]]  # the other face has the values of this one
-    mesh.point_data["shown"] = deviation
-    high = float(np.nanmax(np.abs(found.distance)))
-    style: dict[str, Any] = {"limits": (-max(high, 1e-6), max(high, 1e-6))}
-    if fixture.limits:
-        high = max(high, 1.5 * max(map(abs, fixture.limits)))
-        style = {"limits": (-high, high), "colours": colours(-high, high, fixture.limits)}
-    pictures.make_map(mesh, "deviation from the nominal shape (mm)",
-                      pictures.Style(mirror=fixture.mirror, view="iso" if fixture.upper else "below", **style), path)
-
-
-def draw_sections(found: Deviations, fixture: Fixture, path: Path) -> None:
-    """Draw the deviations along the sections, the tolerance as a band."""
-    groups = list(found.sections.groupby("section", sort=False))
-    figure, axes = new_figure((7, 2.6 * len(groups)), len(groups), squeeze=False)
-    for (name, table), place in zip(groups, axes[:, 0]):
-        place.plot(table["length"], table["deviation"], color="#0072b2", linewidth=1.3)
-        if fixture.limits:
-            place.axhspan(*fixture.limits, color=IN, alpha=0.2)
-        place.set(xlabel=f"along the section {name} of the nominal shape (mm)", ylabel="deviation (mm)")
-        place.grid(True, color="0.9")
-    save(figure, path, 150)
-
-
 def write(found: Deviations, fixture: Fixture, folder: Path) -> None:
     """Write tables and pictures."""
     made_folder(folder)
@@ -414,8 +372,8 @@ def write(found: Deviations, fixture: Fixture, folder: Path) -> None:
         if len(table := getattr(found, name)):
             table.to_csv(folder / f"{name}.csv", index=False, float_format="%.9g")
     if len(found.sections):
-        draw_sections(found, fixture, folder / "sections.png")
-    draw_map(found, fixture, folder / "map.png")
+        deviation_pictures.draw_sections(found, fixture, folder / "sections.png")
+    deviation_pictures.draw_map(found, fixture, folder / "map.png")
 
 
 def said(fixture: Fixture, found: Deviations, in_fixture: bool) -> list[str]:

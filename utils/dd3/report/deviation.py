@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Part of the page: the sheet in its checking fixture, green within its tolerances and red outside."""
 
-from dd3 import deviation
+from dd3 import deviation, deviation_pictures
 from dd3.fixture import read_fixture
 from dd3.report.page import Report
 
@@ -14,9 +14,10 @@ def add_deviation(report: Report) -> None:
     found = deviation.compare(report.folder, fixture)
     report.deviations = [item._replace(name=f"deviation of {item.name}") for item in found.items]
     alt = "deviation from the nominal shape"
-    content = report.drawn(lambda: deviation.draw_map(found, fixture, report.picture("deviation")), "deviation", alt)
+    content = report.drawn(lambda: deviation_pictures.draw_map(found, fixture, report.picture("deviation")),
+                           "deviation", alt)
     if len(found.sections):
-        deviation.draw_sections(found, fixture, report.picture("deviation_sections"))
+        deviation_pictures.draw_sections(found, fixture, report.picture("deviation_sections"))
         content += report.image("deviation_sections", f"{alt} along sections")
     for table in (found.points, found.supports):
         if len(table):
