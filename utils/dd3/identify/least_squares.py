@@ -142,7 +142,7 @@ class Fit:
         spread[0] = 0
         found = differential_evolution(costs, list(zip(self.low, self.high)), init=np.clip(
             first + spread, self.low, self.high), vectorized=True, updating="deferred", maxiter=BORDER, polish=False,
-            tol=1e-4, rng=seed)
+            tol=1e-4, seed=seed)
         return found.x if found.fun < costs(first[:, None])[0] else first
 
     def best(self, starts: int, spread: float, seed: int) -> tuple[np.ndarray, list[float]]:

@@ -77,7 +77,7 @@ def latin_hypercube(distributions: Sequence[Any], count: int, ranks: np.ndarray 
 
     ranks: matrix of rank correlations, independent by default.
     """
-    places = stats.qmc.LatinHypercube(len(distributions), rng=np.random.default_rng(seed)).random(count)
+    places = stats.qmc.LatinHypercube(len(distributions), seed=np.random.default_rng(seed)).random(count)
     if ranks is not None:
         places = correlate(places, ranks, seed)
     return np.column_stack([one.ppf(places[:, i]) for i, one in enumerate(distributions)])

@@ -328,11 +328,11 @@ def read_vtk(path: Path) -> Facets:
         faces, points = np.asarray(data.faces), np.asarray(data.points, float)
     except Exception as error:  # readers raise many kinds
         raise Problem(f"{path}: cannot be read: {error}") from None
-    if not data.n_cells or not data.n_faces:
+    if not data.n_cells or not data.GetNumberOfPolys():
         known = "".join(f"; {item}" for item in account.left_out()[:5])
         raise Problem(f"{path}: no facets; a damaged file or one of another kind{known}")
-    if wanted is not None and data.n_faces != wanted:
-        raise Problem(f"{path}: {data.n_faces} of {wanted} faces are read: the file is cut off or damaged")
+    if wanted is not None and data.GetNumberOfPolys() != wanted:
+        raise Problem(f"{path}: {data.GetNumberOfPolys()} of {wanted} faces are read: the file is cut off or damaged")
     cells, i = [], 0
     while i < len(faces):
         count = int(faces[i])
