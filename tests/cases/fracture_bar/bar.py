@@ -4,9 +4,9 @@
 
     bar.py >reference.csv
 
-Hooke's law of the rates of logarithmic strain, von Mises's criterion and Swift's hardening; the bar is free across in
-the first phase, and of constant width in the second. The root of the damage of exponent 2 grows by dp over the strain
-to fracture, bilinear in the normalised Lode angle and the triaxiality. scipy's DOP853 integrates stress, plastic strain,
+Hooke's law of the rates of logarithmic strain, von Mises's criterion, Swift's hardening; the bar is free across in the
+first phase, and of constant width in the second. The root of the damage of exponent 2 grows by dp over the strain to
+fracture, bilinear in the normalised Lode angle and the triaxiality. scipy's DOP853 integrates stress, plastic strain,
 strains across and that root. The damage is printed beside the table.
 """
 import sys
