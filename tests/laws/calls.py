@@ -27,11 +27,20 @@ class Material:
         self.stress, self.tangent = np.zeros(6), np.zeros((6, 6), order="F")
         self.state = np.zeros(library.dd3laws_state_size(self.handle))
 
-    def update(self, strain):
-        """Integrate stress and state over a strain increment."""
+    def names(self):
+        """Return the names of the internal variables, one for each component."""
+        name, found = ctypes.create_string_buffer(200), []
+        for i in range(len(self.state)):
+            self.library.dd3laws_state_name(self.handle, i, name, ctypes.c_size_t(200))
+            found.append(name.value.decode())
+        return found
+
+    def update(self, strain, time=0.0):
+        """Integrate stress and state over a strain increment, in a time for laws of the strain rate."""
         strain, message = np.array(strain), ctypes.create_string_buffer(2000)
-        code = self.library.dd3laws_update(self.handle, pointer(strain), pointer(self.stress), pointer(self.state),
-                                                pointer(self.tangent), message, ctypes.c_size_t(2000))
+        code = self.library.dd3laws_update_timed(
+            self.handle, pointer(strain), ctypes.c_double(time), pointer(self.stress), pointer(self.state),
+            pointer(self.tangent), message, ctypes.c_size_t(2000))
         assert code == 0, message.value.decode()
 
 

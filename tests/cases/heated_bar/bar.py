@@ -12,9 +12,15 @@ YOUNG, POISSON, AREA, LENGTH = 2.06e5, 0.3, 100.0, 10.0
 HEATING = 0.9 / (7.85e-9 * 4.6e8)
 
 
-def flow_stress(p, temperature):
-    """At the reference rate."""
-    return 565.32 * (0.007117 + p) ** 0.2589 * np.interp(temperature, [20, 60, 100], [1, 0.95, 0.8])
+FACTORS = {
+    "table": lambda temperature: np.interp(temperature, [20, 60, 100], [1, 0.95, 0.8]),
+    "johnson_cook": lambda temperature: 1 - ((temperature - 20) / 480) ** 0.8,
+}
+
+
+def swift(p):
+    """Flow stress at the reference rate and temperature."""
+    return 565.32 * (0.007117 + p) ** 0.2589
 
 
 def stress(time, p):
@@ -22,20 +28,21 @@ def stress(time, p):
     return YOUNG * (np.log1p(3 * time / LENGTH) - p)
 
 
-def rates(time, state):
-    """Rates of plastic strain and temperature."""
-    factor = stress(time, state[0]) / flow_stress(*state)
-    rate = 1e-3 * np.exp(min((factor - 1) / 0.02, 100)) if factor > 1 else 0.0
-    return [rate, HEATING * stress(time, state[0]) * rate]
-
-
 def main():
     """Integrate to 13 mm."""
-    start = LENGTH / 3 * np.expm1(flow_stress(0, 40) / YOUNG)
-    p, temperature = solve_ivp(rates, (start, 1), [0, 40], "Radau", rtol=1e-9, atol=1e-13).y[:, -1]
-    now = stress(1, p)
-    force = now * AREA * np.exp(-p - 2 * POISSON * now / YOUNG)
-    print(f"p {p:.6f}, temperature {temperature:.4f}, stress {now:.3f} MPa, force {force:.2f} N")
+    for name, factor_of in FACTORS.items():
+        def rates(time, state, factor_of=factor_of):
+            p, temperature = state
+            factor = stress(time, p) / (swift(p) * factor_of(temperature))
+            rate = 1e-3 * np.exp(min((factor - 1) / 0.02, 100)) if factor > 1 else 0.0
+            return [rate, HEATING * stress(time, p) * rate]
+
+        start = LENGTH / 3 * np.expm1(swift(0) * factor_of(40) / YOUNG)
+        p, temperature = solve_ivp(rates, (start, 1), [0, 40], "Radau", rtol=1e-9, atol=1e-13).y[:, -1]
+        now = stress(1, p)
+        force = now * AREA * np.exp(-p - 2 * POISSON * now / YOUNG)
+        print(f"{name}: p {p:.6f}, temperature {temperature:.4f}, stress {now:.3f} MPa, force {force:.2f} N; "
+              f"factor {factor_of(temperature):.4f}, {factor_of(40):.4f} at the start")
 
 
 if __name__ == "__main__":

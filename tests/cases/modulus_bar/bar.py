@@ -8,16 +8,23 @@ of sigma^2/2 d(1/E). Needs numpy only.
 """
 import numpy as np
 
-YOUNG, SATURATED, RATE, POISSON = 2.06e5, 1.63e5, 30.8, 0.3
+YOUNG, POISSON = 2.06e5, 0.3
 AREA, LENGTH = 100.0, 10.0
-
-
-def modulus(p):
-    """Young's modulus, MPa."""
-    return SATURATED + (YOUNG - SATURATED) * np.exp(-RATE * p)
+# Young's modulus of a plastic strain, MPa
+MODULI = {
+    "chord": lambda p: 1.63e5 + (YOUNG - 1.63e5) * np.exp(-30.8 * p),
+    "table": lambda p: np.interp(p, [0, 0.02, 0.06, 0.15], [YOUNG, 1.86e5, 1.7e5, 1.61e5]),
+}
 
 
 def main():
+    """Print the values of each law."""
+    for name, modulus in MODULI.items():
+        print(name)
+        stretch_and_unload(modulus)
+
+
+def stretch_and_unload(modulus):
     """Integrate to a stretch of 1.1, then unload to 1.099."""
     p = np.linspace(0, 0.1, 2000001)
     stress = 565.32 * (0.007117 + p) ** 0.2589
