@@ -9,7 +9,7 @@ import numpy as np
 from dd3.errors import Problem
 
 WIDTH, LONG = 10, 20  # columns of a field, and of the points of a curve
-ACCURACY = 1e-8  # relative
+ACCURACY, DIGITS = 1e-7, 12  # relative; of a number
 TITLE = 80  # columns of a title
 
 
@@ -31,7 +31,7 @@ def field(value: float | int | str, width: int = WIDTH) -> str:
 def shortest(value: float, columns: int) -> str:
     """Return the most accurate text of a number in columns, with a point or an exponent."""
     texts = set()
-    for digits in range(17, 0, -1):
+    for digits in range(DIGITS, 0, -1):
         for text in (f"{value:.{digits}g}", f"{value:.{digits - 1}e}"):
             plain = re.sub(r"e([+-])0*(\d)", lambda part: f"e{part[1].strip('+')}{part[2]}", text)
             plain = re.sub(r"^(-?)0\.", r"\1.", plain) if len(plain) > columns else plain

@@ -64,8 +64,11 @@ def flat_ends(points: np.ndarray) -> np.ndarray:
     return np.vstack([[x0 - FLAT, y0], points, [x1 + FLAT, y1]])
 
 
-def gissmo(law: Words, material: int, number: int, title: str) -> tuple[list[str], list[str]]:
-    """Return the cards of a law of fracture, with curves from a number on, and what is to be said."""
+def gissmo(law: Words, material: int, number: int, title: str, scale: float) -> tuple[list[str], list[str]]:
+    """Return the cards of a law of fracture, with curves from a number on, and what is to be said.
+
+    scale: of the plastic strain in LS-DYNA over that here.
+    """
     blocks = refined(blocks_of(law))
     exponent = law.values.get("exponent", 1.0)
     several = len(blocks) > 1
@@ -76,7 +79,7 @@ def gissmo(law: Words, material: int, number: int, title: str) -> tuple[list[str
         lines += table(number, f"{title}: strains to fracture over the Lode parameter", rows)
     for k, (lode, points) in enumerate(blocks, int(several)):
         lines += curve(number + k, f"{title}: strain to fracture over the triaxiality"
-                       + (f", Lode angle {lode:g}" if several else ""), flat_ends(points), INTERVALS)
+                       + (f", Lode angle {lode:g}" if several else ""), flat_ends(points) * (1, scale), INTERVALS)
     said = ["fracture: *MAT_ADD_DAMAGE_GISSMO, DTYP = 0: no influence on the stress, no element is deleted"]
     if law.name == "hosford_coulomb":
         said.append(f"fracture: hosford_coulomb as a table at every {TRIAXIALITIES[1] - TRIAXIALITIES[0]:.2g} of the "
@@ -109,5 +112,5 @@ def forming_limit(points: np.ndarray, material: int, number: int, title: str, er
         return lines, [f"forming limit curve: *DEFINE_CURVE {number}, engineering strains in per cent, which no card "
                        "uses; erosion writes it as LCFLD of *MAT_ADD_EROSION, which deletes elements"]
     lines = ["*MAT_ADD_EROSION_TITLE", f"{title}: forming limit", *row(EROSION[0], {"MID": material}),
-             *row(EROSION[1], {}), *row("IDAM", {"IDAM": 0}), *row(LIMITS, {"LCFLD": number}), *lines]
+             *row(EROSION[1], {}), *row("IDAM" + 6 * " unused" + " LCREGD", {"IDAM": 0}), *row(LIMITS, {"LCFLD": number}), *lines]
     return lines, [f"forming limit curve: LCFLD = {number} of *MAT_ADD_EROSION: shells beyond it are deleted"]

@@ -387,7 +387,7 @@ def yld2000(deck: Deck, card: Card, units: Units, law: Law) -> int:
     rule = second.label("HARD")
     if rule < 0:
         second.leave("HARD < 0 takes the curve", "K E0 N")
-        law.hardening = by_curve(deck, -rule, units, law, second.place)
+        law.hardening = (by_table if -rule in deck.curves.tables else by_curve)(deck, -rule, units, law, second.place)
     elif rule in (0, 1):
         law.hardening = swift(units, law, (second.number("K"), second.number("N"), second.number("E0")), second.place)
     else:

@@ -52,6 +52,7 @@ def cards_of(material: Material, options: CardOptions | None = None) -> Material
                       + "\n  --nearest writes it")
     if not laws.is_isotropic:
         laws.notes.append("for shells: of plane stress; parameters of the shears 23 and 31 have no field")
+    laws.notes += laws.said_of_curves()
     more = limits(laws)
     said = [line for entry in (f"*MATERIAL {material.name}", *(" = ".join(pair) for pair in laws.block.values))
             for line in textwrap.wrap(entry, fields.TITLE, initial_indent="$ ", subsequent_indent="$   ")]
@@ -64,7 +65,7 @@ def limits(laws: Laws) -> list[str]:
     lines: list[str] = []
     name, mid, label = laws.material.name, laws.options.mid, LABELS * laws.options.mid + LABELS // 2
     if laws.fracture.name != "none":
-        lines, said = fracture_cards.gissmo(laws.fracture, mid, label, name)
+        lines, said = fracture_cards.gissmo(laws.fracture, mid, label, name, laws.scale)
         laws.notes += said
     if points := laws.block.value("forming_limit"):
         pairs = np.array([float(word) for word in points.split()]).reshape(-1, 2)

@@ -55,6 +55,11 @@ class CardOptions:
             raise Problem("expected a largest strain of 0.01 to 10, a number of the material from 1 on, a density > 0")
 
 
+def percent(value: float) -> str:
+    """Return a fraction in per cent."""
+    return f"{100 * value:.2g} %" if abs(value) > 1e-12 else "0 %"
+
+
 @dataclass
 class Hardening:
     """What the card has of the flow stress: by its own form, or the number of a curve or table."""
@@ -80,6 +85,7 @@ class Laws:
         self.notes: list[str] = []
         self.losses: list[str] = []
         self.tail: list[str] = []  # curves and tables
+        self.curves: list[flow_curves.Sampled] = []
         self.label = LABELS * options.mid
         self.monotonic = False  # back-stresses or a history are replaced by the curve of tension
 
@@ -233,10 +239,18 @@ class Laws:
         title = f"{self.material.name}: flow stress{at} over the plastic strain"
         points = one.points * (1, 1 / self.units.stress)
         self.tail += fields.curve(self.label, title, points, one.intervals)
-        self.notes.append(f"curve {self.label}{at}: {len(points)} points up to a plastic strain of "
-                          f"{self.options.strain:g}, between them off by up to {100 * one.error:.2g} %; by LCINT = "
-                          f"{one.intervals} equal intervals from {flow_curves.FIRST:g} on {100 * one.even_error:.2g} %")
+        self.curves.append(one)
         return self.label
+
+    def said_of_curves(self) -> list[str]:
+        """Return what is to be said of the curves of the flow stress."""
+        if not self.curves:
+            return []
+        points, intervals = max(len(one.points) for one in self.curves), max(one.intervals for one in self.curves)
+        return [f"flow stress: {len(self.curves)} curve{'s' * (len(self.curves) > 1)} of up to {points} points to a "
+                f"plastic strain of {self.options.strain:g}, beyond it straight; between them off by up to "
+                f"{percent(max(one.error for one in self.curves))}, by LCINT = {intervals} equal intervals, from "
+                f"{flow_curves.FIRST:g} on, by {percent(max(one.even_error for one in self.curves))}"]
 
     def rates(self) -> tuple[list[float], bool]:
         """Return the rates of a table, 1/s, and whether the flow stress is straight over their logarithm."""
@@ -264,9 +278,11 @@ class Laws:
                                   + "logarithm of the strain rate" * logarithmic + "strain rate" * (not logarithmic),
                                   list(zip(values, labels)))
         error = flow_curves.rate_error(self.flow, rates, logarithmic, self.options.strain)
+        below = self.flow(0.0, rates[0]) / self.flow(0.0, 0.0) - 1
+        said = f", at rest too large by {percent(below)}" if below > 1e-9 else ""
         self.notes.append(f"rate: {self.rate.name} as table {number} of {len(rates)} curves, {rates[0]:.3g} to "
                           f"{rates[-1]:.3g} /s, straight over the {'logarithm of the ' * logarithmic}rate: off by up "
-                          f"to {100 * error:.2g} %, constant beyond")
+                          f"to {percent(error)}; constant beyond{said}")
         return number
 
     def speed(self, number: int) -> dict[str, float | int]:
