@@ -2,6 +2,7 @@
 """Materials as cards of LS-DYNA: their fields, and that what dd3 import reads from them is the same material."""
 
 import subprocess
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -51,7 +52,7 @@ def imported(lines, units=None):
 def fields_in(lines):
     """Return the fields of rows by the names in the comments above, of ten columns each."""
     found = {}
-    for head, below in zip(lines, lines[1:]):
+    for head, below in pairwise(lines):
         if head.startswith("$#") and not head.rstrip().endswith(("o1", "curveid")):
             names = [head[i:i + 10].replace("$#", "").strip() for i in range(0, len(head), 10)]
             words = [below[i:i + 10].strip() for i in range(0, len(head), 10)]

@@ -112,5 +112,6 @@ def forming_limit(points: np.ndarray, material: int, number: int, title: str, er
         return lines, [f"forming limit curve: *DEFINE_CURVE {number}, engineering strains in per cent, which no card "
                        "uses; erosion writes it as LCFLD of *MAT_ADD_EROSION, which deletes elements"]
     lines = ["*MAT_ADD_EROSION_TITLE", f"{title}: forming limit", *row(EROSION[0], {"MID": material}),
-             *row(EROSION[1], {}), *row("IDAM" + 6 * " unused" + " LCREGD", {"IDAM": 0}), *row(LIMITS, {"LCFLD": number}), *lines]
+             *row(EROSION[1], {}), *row("IDAM" + 6 * " unused" + " LCREGD", {"IDAM": 0}),
+             *row(LIMITS, {"LCFLD": number}), *lines]
     return lines, [f"forming limit curve: LCFLD = {number} of *MAT_ADD_EROSION: shells beyond it are deleted"]
