@@ -144,6 +144,7 @@ def test_card_by_itself():
     (36, "yld91 m=2 a=1.1 b=0.9 c=1 f=1 g=1 h=1.05", {"hardening": "linear Y0=200 H=500"}), (133, YLD2000, {}),
     (133, "yld91 m=8 a=1.1 b=0.9 c=1 f=1 g=1 h=1.05", {}), (133, "hosford m=6", {}), (125, "von_mises", TWO_SURFACES),
     (226, HILL, TWO_SURFACES), (226, SCALED, TWO_SURFACES), (242, YLD2000, TWO_SURFACES),
+    (37, "hill48 r0=1.4 r45=1.4 r90=1.4", {"hardening": "linear Y0=200 H=500", "modulus": "chord Ea=1.6e5 xi=30"}),
     (98, "von_mises", {"hardening": HEATED["hardening"], "rate": HEATED["rate"]}), (15, "von_mises", HEATED)])
 def test_exact(number, criterion, keys):
     """Check that a card without curves is the same material: yield stresses, r-values, tension and reversal."""
@@ -264,7 +265,7 @@ def test_library():
     ({"hardening": "teodosiu_hu Y0=120 CR=28 Rsat=80 CX=200 X0=10 Ssat=240 CSD=4 CSL=4 nL=1 CP=2.2 nP=25 f=0.7 r=4"},
      "hardening = teodosiu_hu"),
     ({**CHABOCHE, "backstress": "prager k=300"}, "backstress = prager"),
-    ({"modulus": "chord Ea=1.6e5 xi=30"}, "constant E"),
+    ({"criterion": HILL, "modulus": "chord Ea=1.6e5 xi=30"}, "constant E"),
     ({**TWO_SURFACES, "rate": "power m=0.02 reference=0.01"}, "rate = power"),
     ({**HEATED, "hardening": SWIFT}, "temperature = johnson_cook")])
 def test_refused(keys, said):
@@ -409,6 +410,16 @@ def test_run(program):
     subprocess.run([program, "--quiet", "bar.dat"], check=True, capture_output=True)
     said = call("export", "bar.out", "bar.k", "--shells", "--cards")
     assert "left out: the card of the material m: no card" in said and "*MAT" not in Path("bar.k").read_text()
+
+
+def test_run_with_a_file(program):
+    """Check a material whose curve is in a file beside the input file, from another folder."""
+    Path("jobs").mkdir()
+    Path("jobs/curve.txt").write_text("0 200\n0.1 300\n0.5 400\n")
+    Path("jobs/bar.dat").write_text(DECK.replace("hardening = ${hardening}", 'hardening = table file = "curve.txt"'))
+    subprocess.run([program, "--quiet", "jobs/bar.dat"], check=True, capture_output=True)
+    assert "m: *MAT_024" in call("export", "jobs/bar.out", "bar.k", "--cards")
+    assert float(fields_in(Path("bar.k").read_text().splitlines())["lcss"]) == 101
 
 
 def test_angles():

@@ -165,10 +165,15 @@ def yoshida_uemori(row: Row, options: Row, units: Units, law: Law, moduli: Row |
     law.hardening = (f"yoshida_uemori Y={inner * units.stress:.8g} B={outer * units.stress:.8g} C={rate:.8g} "
                      f"m={surface:.8g} b_sat={centre * units.stress:.8g} Rsat={growth * units.stress:.8g} "
                      f"h={extent:.8g}")
-    final, saturation = (moduli or options).numbers("EA COE")
+    chord(moduli or options, units, law)
+
+
+def chord(row: Row, units: Units, law: Law) -> None:
+    """Take the chord modulus by EA and COE, where there is one."""
+    final, saturation = row.numbers("EA COE")
     if final > 0 and saturation > 0:
         if final * units.stress > law.young:
-            raise Problem(f"{options.place}: error: EA = {final:g} is larger than E; expected a modulus that falls")
+            raise Problem(f"{row.place}: error: EA = {final:g} is larger than E; expected a modulus that falls")
         law.modulus = f"chord Ea={final * units.stress:.8g} xi={saturation:.8g}"
 
 

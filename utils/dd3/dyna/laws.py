@@ -14,6 +14,7 @@ from dd3.dyna.hardening import (
     by_curve,
     by_table,
     chaboche,
+    chord,
     cowper_symonds,
     first_strain,
     linear,
@@ -42,7 +43,7 @@ ROWS = {3: ("MID RO E PR SIGY ETAN BETA", "SRC SRP FS VP"),
         24: ("MID RO E PR SIGY ETAN FAIL TDEL", "C P LCSS LCSR VP unused RFILTF",
              "EPS1 EPS2 EPS3 EPS4 EPS5 EPS6 EPS7 EPS8", "ES1 ES2 ES3 ES4 ES5 ES6 ES7 ES8"),
         36: ("MID RO E PR HR P1 P2 ITER", "M R00 R45 R90 LCID E0 SPI P3"),
-        37: ("MID RO E PR SIGY ETAN R HLCID", "unused1 unused2 unused3 ICFLD unused5 STRAINLT"),
+        37: ("MID RO E PR SIGY ETAN R HLCID", "IDSCALE EA COE ICFLD unused5 STRAINLT"),
         98: ("MID RO E PR VP", "A B N C PSFAIL SIGMAX SIGSAT EPSO"),
         122: ("MID RO E PR HR P1 P2", "R00 R45 R90 LCID E0"),
         125: ("MID RO E PR R HLCID OPT", "CB Y SC K RSAT SB H SC2", "EA COE IOPT C1 C2"),
@@ -237,7 +238,7 @@ def heated_johnson_cook(deck: Deck, card: Card, units: Units, law: Law) -> int:
 
 
 def transverse(deck: Deck, card: Card, units: Units, law: Law) -> int:
-    """*MAT_037: Hill's criterion with one r-value."""
+    """*MAT_037: Hill's criterion with one r-value; with _ECHANGE a modulus that falls."""
     row, second = row_of(card, 0), row_of(card, 1)
     r = abs(row.number("R", 1.0)) or 1.0
     law.criterion = hill48((r, r, r))
@@ -246,6 +247,8 @@ def transverse(deck: Deck, card: Card, units: Units, law: Law) -> int:
         row.leave("HLCID goes before", "SIGY ETAN")
     law.hardening = by_curve(deck, number, units, law, row.place) if number else linear(
         units, law, row.number("SIGY"), row.number("ETAN"), row.place)
+    chord(second, units, law)
+    second.leave("a modulus by a curve is not available", "IDSCALE")
     second.leave("a forming limit curve: dd3 fld --curve", "ICFLD STRAINLT")
     return 0
 

@@ -44,7 +44,7 @@ def cards_of(material: Material, options: CardOptions | None = None) -> Material
         raise Problem(f"{material.name}: *MAT_{number:03d} does not have yield = {laws.criterion.name}, hardening = "
                       f"{laws.law.name} with the other laws of *MATERIAL; expected "
                       + " or ".join(f"*MAT_{one:03d}" for one in possible))
-    keyword = f"*MAT_{KEYWORDS[number]}"
+    keyword = f"*MAT_{KEYWORDS[number]}" + "_ECHANGE" * (number == 37 and laws.has_echange())
     rows = ROWS_OF[number](laws, number)
     if laws.losses and not options.nearest:
         raise Problem(f"{material.name}: no card of LS-DYNA has all of this material; nearest: *MAT_{number:03d} "

@@ -132,7 +132,10 @@ class Laws:
         if hardening == "yoshida_uemori":
             return self.of_two_surfaces()
         if self.modulus.name != "none":
-            self.lose(f"modulus = {self.modulus.text}", "constant E; EA and COE belong to cards of yoshida_uemori")
+            if self.has_echange():
+                return [37]
+            self.lose(f"modulus = {self.modulus.text}", "constant E; EA and COE belong to yoshida_uemori, and to "
+                      "isotropic hardening with one r-value")
         if hardening == "teodosiu_hu":
             self.lose("hardening = teodosiu_hu", "isotropic hardening by its curve of tension, without its change at "
                       "reversals and turns of the path")
@@ -162,6 +165,12 @@ class Laws:
         power = hardening == "swift" and not rate and not heated and not self.monotonic
         power = power and self.swift()[0] > SMALL_STRESS * self.units.stress
         return [24, *[18] * power, 36, *([] if rate else [122, 37])]
+
+    def has_echange(self) -> bool:
+        """Return whether the material is that of *MAT_037_ECHANGE: one r-value, isotropic hardening, chord modulus."""
+        others = (self.rate.name, self.temperature.name, *(law.name for law in self.backstresses))
+        return (self.modulus.name == "chord" and isinstance(self.plane, Quadratic) and len(set(self.plane.r)) == 1
+                and self.law.name != "teodosiu_hu" and set(others) == {"none"})
 
     def of_two_surfaces(self) -> list[int]:
         """Return the cards with Yoshida and Uemori's law."""

@@ -102,7 +102,7 @@ def by_r(laws: Laws, number: int) -> list[str]:
     if number == 37:
         first |= {"R": laws.plane.r[0]} | ({"HLCID": flow.label} if flow.label else {
             "SIGY": flow.values[0] / unit, "ETAN": laws.tangent(flow.values[1]) / unit})
-        return [*fields.row(names[0], first), *fields.row(names[1], {})]
+        return [*fields.row(names[0], first), *fields.row(names[1], chord(laws))]
     second: dict[str, float | int] = dict(zip(("R00", "R45", "R90"), laws.plane.r))
     if flow.form == "linear":
         first |= {"HR": 1, "P1": laws.tangent(flow.values[1]) / unit, "P2": flow.values[0] / unit}
@@ -150,6 +150,13 @@ def alpha(laws: Laws) -> list[str]:
     return fields.row(" ".join(values), values)
 
 
+def chord(laws: Laws) -> dict[str, float | int]:
+    """Return EA and COE of the chord modulus."""
+    if laws.modulus.name != "chord":
+        return {}
+    return {"EA": laws.modulus["ea"] / laws.units.stress, "COE": laws.modulus["xi"] / laws.scale}
+
+
 def two_surfaces(laws: Laws, number: int) -> list[str]:
     """Return *MAT_125, 226 and 242."""
     law, names, s, first = laws.law, ROWS[number], laws.scale, common(laws)
@@ -157,20 +164,17 @@ def two_surfaces(laws: Laws, number: int) -> list[str]:
     own: dict[str, float | int] = {"CB": law["b"] * stress, "Y": law["y"] * stress, "SC": law["c"] / s,
                                    "K": law["m"] / s, "RSAT": law["rsat"] * stress, "SB": law["b_sat"] * stress,
                                    "H": law["h"]}
-    chord: dict[str, float | int] = {}
-    if laws.modulus.name == "chord":
-        chord = {"EA": laws.modulus["ea"] / laws.units.stress, "COE": laws.modulus["xi"] / s}
     if number == 242:
         assert isinstance(laws.plane, Eight)
-        return [*fields.row(names[0], first | chord | {"M": laws.plane.exponent}), *alpha(laws),
+        return [*fields.row(names[0], first | chord(laws) | {"M": laws.plane.exponent}), *alpha(laws),
                 *fields.row(names[2], own), *fields.row(names[3], aopt(laws) | {"IOPT": 0}), *axes(laws, number)]
     assert isinstance(laws.plane, Quadratic)
     if number == 125:
         return [*fields.row(names[0], first | {"R": laws.plane.r[0]}), *fields.row(names[1], own),
-                *fields.row(names[2], chord | {"IOPT": 0})]
+                *fields.row(names[2], chord(laws) | {"IOPT": 0})]
     r = dict(zip(("R00", "R45", "R90"), laws.plane.r))
     return [*fields.row(names[0], first | {"M": 2.0} | r), *fields.row(names[1], own),
-            *fields.row(names[2], aopt(laws) | chord | {"IOPT": 0}), *axes(laws, number)]
+            *fields.row(names[2], aopt(laws) | chord(laws) | {"IOPT": 0}), *axes(laws, number)]
 
 
 ROWS_OF: Mapping[int, Callable[[Laws, int], list[str]]] = {

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Parts, sections and materials of the sheet of a run as cards of LS-DYNA."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,19 +19,20 @@ from dd3.laws import Material
 SHEAR = 0.833  # factor of the shear of shells
 
 
-def run_cards(job: dict[str, Any], numbers: Sequence[int], options: CardOptions, layers: tuple[int, float] | None
-              ) -> tuple[list[str], list[int]]:
+def run_cards(job: dict[str, Any], numbers: Sequence[int], options: CardOptions, layers: tuple[int, float] | None,
+              folder: Path) -> tuple[list[str], list[int]]:
     """Return parts, section and materials of a run, and the parts whose materials need axes; a material that no card
     has is left out with a warning.
 
-    numbers: those of the materials. layers: of shells, points through the thickness, and the mean thickness.
+    numbers: those of the materials. layers: of shells, points through the thickness, and the mean thickness. folder:
+    of the results, beside which the input file is.
     """
     lines, anisotropic = section(layers), []
     for number in map(int, numbers):
         name = job["materials"][number - 1]["name"]
         lines += ["*PART", name[:TITLE], *row("PID SECID MID", {"PID": number, "SECID": 1, "MID": number})]
         try:
-            cards = material_of(job, name, replace(options, mid=number))
+            cards = material_of(job, name, replace(options, mid=number), folder)
         except Problem as problem:
             LOG.warning(f"left out: the card of the material {problem}")
             continue
@@ -42,9 +45,13 @@ def run_cards(job: dict[str, Any], numbers: Sequence[int], options: CardOptions,
     return lines, anisotropic
 
 
-def material_of(job: dict[str, Any], name: str, options: CardOptions) -> MaterialCards:
-    """Return the cards of a material of a run."""
-    return cards_of(Material(f"*MATERIAL {name}\n{text_of(job, name)}"), options)
+def material_of(job: dict[str, Any], name: str, options: CardOptions, folder: Path) -> MaterialCards:
+    """Return the cards of a material of a run; files that it names are relative to its input file."""
+    def placed(word: re.Match[str]) -> str:
+        beside = folder.absolute().parent / word[2]
+        return f'{word[1]}"{beside if beside.is_file() else word[2]}"'
+    text = re.sub(r"""(file\s*=\s*)["']?([^"'\s]+)["']?""", placed, text_of(job, name))
+    return cards_of(Material(f"*MATERIAL {name}\n{text}"), options)
 
 
 def section(layers: tuple[int, float] | None) -> list[str]:
