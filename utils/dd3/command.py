@@ -36,7 +36,7 @@ COMMANDS = {
     "flc": ("dd3.flc", "compute the forming limit curve of a material"),
     "bead": ("dd3.bead", "compute restraint and uplift of a draw-bead from its geometry"),
     "fld": ("dd3.forming_limit_diagram", "draw the forming limit diagram of a run"),
-    "export": ("dd3.export", "write the drawn sheet as a mesh, for ParaView, or for LS-DYNA"),
+    "export": ("dd3.export", "write the drawn sheet as a mesh, for ParaView, or for LS-DYNA; materials for LS-DYNA"),
     "identify": ("dd3.identify.command", "identify a yield criterion, with a hardening law, from measured values"),
     "fit": ("dd3.identify.fit", "fit a hardening law to a tension curve"),
     "study": ("vary parameters of an input file", "dd3 study job.dat --vary friction=0.1,0.14", {

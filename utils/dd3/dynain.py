@@ -277,6 +277,8 @@ def account_of(reader: Reader) -> list[str]:
         elif card.keyword.startswith("*PART"):
             for row in filter(None, card.rows.values()):
                 row.drop("the thicknesses are those of the shells, the material that of --material")
+        elif card.keyword.startswith(("*MAT", "*SECTION", "*DEFINE")):
+            card.leave("the material is that of --material, the thicknesses are those of the shells")
         elif card.keyword.startswith("*INITIAL_STRAIN"):
             card.leave("strains count from the formed sheet")
         elif card.keyword.startswith("*INITIAL_STRESS"):

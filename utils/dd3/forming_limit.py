@@ -111,9 +111,10 @@ def entries_of(job: dict[str, Any], name: str) -> dict[str, str]:
 
 
 def text_of(job: dict[str, Any], name: str) -> str:
-    """Return the block *MATERIAL of a run without its name."""
+    """Return the block *MATERIAL of a run without its name and the keys that its input leaves out."""
     entries = [entry for block in job["input"]["blocks"] for entry in block["entries"]
-               if block["keyword"].lower() == "material" and block["name"].lower() == name.lower()]
+               if block["keyword"].lower() == "material" and block["name"].lower() == name.lower()
+               and not entry.get("default")]
     return "".join(f"  {entry['key']} = {entry['text']}\n" for entry in entries)
 
 

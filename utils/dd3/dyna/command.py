@@ -6,7 +6,7 @@
     dd3imp cup/cup.dat
 
 The blank is the part that deforms, of quadrilateral shells, which are extruded about their mid-surface, or hexahedra;
-the tools are rigid parts in contact with it. Materials: *MAT_003, 015, 018, 024, 036, 037, 122, 133. Motions and forces
+the tools are rigid parts in contact with it. Materials: *MAT_003 to 242, as in the manual. Motions and forces
 by curves become phases: a phase ends where a tool starts, stops or turns back, or where tools go on in other
 proportions; a force that changes meanwhile gets a press_table. Each keyword and each field that is not used is listed
 with its line and the reason, here and in the input file.
@@ -265,7 +265,8 @@ class Import:
                  *([f"  modulus = {self.law.modulus}"] if self.law.modulus else []),
                  *([f"  rate = {self.law.rate}"] if self.law.rate else []),
                  *(f"  {entry}" for entry in self.law.heating),
-                 *([f"  fracture = {self.law.fracture}"] if self.law.fracture else [])]
+                 *([f"  fracture = {self.law.fracture}"] if self.law.fracture else []),
+                 *([f"  forming_limit = {self.law.forming_limit}"] if self.law.forming_limit else [])]
         if self.law.density:
             lines.append(f"  density = {self.law.density:.6g}")
         if self.law.rolling:

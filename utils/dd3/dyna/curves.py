@@ -120,6 +120,7 @@ def polygon(card: Card) -> Curve:
     first = card.row(0, HEAD)
     first.label("LCID")
     first.leave("the relaxation before the start", "SIDR")
+    first.number("LCINT")  # all points are taken here
     rows = [card.row(i, "A O", POINT) for i in card.filled()[1:]]
     if len(rows) < 2:
         raise Problem(f"{card.place}: error: a curve of {len(rows)} points; expected 2 or more")

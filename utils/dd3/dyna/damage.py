@@ -20,6 +20,7 @@ EROSION_KEYWORD = "*MAT_ADD_EROSION"
 DAMAGE = "LCSDG ECRIT DMGEXP DCRIT FADEXP LCREGD"
 EROSION = ("MID EXCL MXPRES MNEPS EFFEPS VOLEPS NUMFIP NCS", "MNPRES SIGP1 SIGVM MXEPS EPSSH SIGTH IMPULSE FAILTM",
            f"IDAM DMGTYP {DAMAGE}", "SIZFLG REFSZ NAHSV LCSRS SHRF BIAXF LCDLIM MIDFAIL")
+LIMITS = "LCFLD NSFF EPSTHIN ENGCRT RADCRT LCEPS12 LCEPS13 LCEPSMX"  # row of *MAT_ADD_EROSION from R11 on
 GISSMO = ("MID unused DTYP REFSZ NUMFIP", f"{DAMAGE} INSTF", "LCSRS SHRF BIAXF LCDLIM MIDFAIL HISVN SOFT LP2BI",
           "RGTR1 RGTR2")
 MOST_ANGLES = 9  # of a table
@@ -31,6 +32,8 @@ def take_fracture(deck: Deck, number: int, law: Law) -> None:
     """Take the fracture that a deck adds to a material, or give the reason why not."""
     for card in deck.damages:
         if card.first(0) == number:
+            if forming_limit(deck, card, law):
+                continue
             if why := unavailable(deck, card):
                 card.leave(why)
             else:
@@ -42,6 +45,27 @@ def value(card: Card, i: int, names: str, name: str) -> float:
     words = split(card.lines[i][1], TEN, card.least) if i < len(card) else []
     k = names.split().index(name)
     return plain(words[k], card.values, card.place_of(i)) if k < len(words) and words[k] else 0.0
+
+
+def forming_limit(deck: Deck, card: Card, law: Law) -> bool:
+    """Take the forming limit curve of *MAT_ADD_EROSION without damage, engineering strains in per cent; check whether
+    there is one."""
+    number = value(card, 3, LIMITS, "LCFLD") if card.keyword == EROSION_KEYWORD else 0.0
+    if number not in deck.curves.cards or value(card, 2, EROSION[2], "IDAM"):
+        return False
+    rows = [card.row(i, names) for i, names in enumerate((*EROSION[:2], "IDAM", LIMITS))]
+    rows[0].number("MID")
+    rows[3].number("LCFLD")
+    for row in rows[:2]:
+        row.leave("of this keyword only GISSMO and the forming limit curve are available")
+    rows[0].leave(UNCOUPLED, "NUMFIP")
+    rows[3].leave(UNCOUPLED)
+    curve = deck.curves.get(int(number), rows[3].place)
+    if min(curve.x.min(), curve.y.min()) <= -100:
+        raise Problem(f"{rows[3].place}: error: a forming limit curve with strains of -100 % or less")
+    law.forming_limit = " ".join(f"{np.log1p(x / 100):.9g} {np.log1p(y / 100):.9g}" for x, y in zip(curve.x, curve.y))
+    law.notes.append("forming limit curve: LCFLD, from engineering strains in per cent; no element is deleted here")
+    return True
 
 
 def unavailable(deck: Deck, card: Card) -> str:
@@ -87,9 +111,9 @@ def take(deck: Deck, card: Card, law: Law) -> None:
         row.leave("factors on the strain to failure, and exceptions, are not available")
     blocks = blocks_of(deck, number, damage.place)
     several = len(blocks) > 1
-    law.fracture = "table" + "".join(f" lode{k}={lode:.6g}" for k, (lode, _) in enumerate(blocks, 1) if several)
+    law.fracture = "table" + "".join(f" lode{k}={lode:.9g}" for k, (lode, _) in enumerate(blocks, 1) if several)
     law.fracture += f" exponent={exponent:.6g}" if exponent != 1 else ""
-    law.fracture += "".join(" &\n    " + " ".join(f"{x:.6g}:{y:.6g}" for x, y in points) for _, points in blocks)
+    law.fracture += "".join(" &\n    " + " ".join(f"{x:.9g}:{y:.9g}" for x, y in points) for _, points in blocks)
     law.notes.append("fracture: by GISSMO; beyond the points of LCSDG the strain is constant here"
                      + ("; the Lode parameter of its table is taken as 27 J3/(2 q^3)" if several else ""))
 

@@ -58,6 +58,7 @@ class Law:
     rate: str = ""
     heating: list[str] = field(default_factory=list)
     fracture: str = ""
+    forming_limit: str = ""
     density: float = 0.0
     notes: list[str] = field(default_factory=list)
 
@@ -108,7 +109,7 @@ def by_table(deck: Deck, number: int, units: Units, law: Law, place: str) -> str
     stresses = np.array([np.interp(strains, *value.T) for value in values])
     if not 2 <= len(curves) <= MOST_CURVES or curves[0][0] <= 0 or (np.diff(stresses, axis=0) < 0).any():
         return by_curve(deck, number, units, law, place)
-    law.rate = "curves " + " ".join(f"r{k}={rate:.6g}" for k, (rate, _) in enumerate(curves, 1)) + "".join(
+    law.rate = "curves " + " ".join(f"r{k}={rate:.9g}" for k, (rate, _) in enumerate(curves, 1)) + "".join(
         f" &\n    {points}" for _, points in curves)
     law.notes.append("hardening: the flow stress is straight over the logarithm of the rate between the curves")
     return f"table {curves[0][1]}"
@@ -128,7 +129,7 @@ def points_of(curve: Curve, units: Units, law: Law) -> str:
         law.notes.append(f"hardening: the flow stress falls behind the plastic strain {strain[falls[0]]:g}")
     if strain[0] > 0:
         strain, stress = np.append(0.0, strain), np.append(stress[0], stress)
-    return " ".join(f"{p:.6g}:{y:.6g}" for p, y in zip(strain, stress))
+    return " ".join(f"{p:.9g}:{y:.9g}" for p, y in zip(strain, stress))
 
 
 def cowper_symonds(row: Row, units: Units) -> str:
@@ -148,8 +149,9 @@ def first_strain(start: float, factor: float, exponent: float, young: float) -> 
     return start or float((young / factor) ** (1 / (exponent - 1)) if exponent < 1 else 1e-3)
 
 
-def yoshida_uemori(row: Row, options: Row, units: Units, law: Law) -> None:
-    """Take the law of Yoshida and Uemori and the chord modulus from the rows that have their parameters."""
+def yoshida_uemori(row: Row, options: Row, units: Units, law: Law, moduli: Row | None = None) -> None:
+    """Take the law of Yoshida and Uemori and the chord modulus from the rows that have their parameters; `moduli` is
+    that of EA and COE, by default `options`."""
     if options.number("IOPT"):
         raise Problem(f"{options.place}: error: IOPT = {options.number('IOPT'):g}, the modified hardening of the "
                       "bounding surface by C1 and C2, is not available; expected IOPT = 0, R by Rsat")
@@ -163,10 +165,15 @@ def yoshida_uemori(row: Row, options: Row, units: Units, law: Law) -> None:
     law.hardening = (f"yoshida_uemori Y={inner * units.stress:.8g} B={outer * units.stress:.8g} C={rate:.8g} "
                      f"m={surface:.8g} b_sat={centre * units.stress:.8g} Rsat={growth * units.stress:.8g} "
                      f"h={extent:.8g}")
-    final, saturation = options.numbers("EA COE")
+    chord(moduli or options, units, law)
+
+
+def chord(row: Row, units: Units, law: Law) -> None:
+    """Take the chord modulus by EA and COE, where there is one."""
+    final, saturation = row.numbers("EA COE")
     if final > 0 and saturation > 0:
         if final * units.stress > law.young:
-            raise Problem(f"{options.place}: error: EA = {final:g} is larger than E; expected a modulus that falls")
+            raise Problem(f"{row.place}: error: EA = {final:g} is larger than E; expected a modulus that falls")
         law.modulus = f"chord Ea={final * units.stress:.8g} xi={saturation:.8g}"
 
 
@@ -184,7 +191,7 @@ def chaboche(row: Row, units: Units, law: Law) -> None:
     points = [(p, y - sum(limit * (1 - np.exp(-rate * p)) for rate, limit in terms)) for p, y in points]
     if min(y for _, y in points) <= 0:
         raise Problem(f"{row.place}: error: the back-stresses are larger than the flow stress")
-    law.hardening = "table " + " ".join(f"{p:.6g}:{y:.6g}" for p, y in points)
+    law.hardening = "table " + " ".join(f"{p:.9g}:{y:.9g}" for p, y in points)
     law.notes.append("hardening: the curve less the back-stresses in tension, as the sum of both is that of the deck")
 
 

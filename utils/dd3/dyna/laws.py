@@ -14,6 +14,7 @@ from dd3.dyna.hardening import (
     by_curve,
     by_table,
     chaboche,
+    chord,
     cowper_symonds,
     first_strain,
     linear,
@@ -23,13 +24,15 @@ from dd3.dyna.hardening import (
     yoshida_uemori,
 )
 from dd3.dyna.planar import barlat89_at
+from dd3.dyna.planar import yld2000 as yld2000_of
 from dd3.errors import Problem
 
 NAMES = {"RIGID": 20, "PIECEWISE_LINEAR_PLASTICITY": 24, "3-PARAMETER_BARLAT": 36, "HILL_3R": 122,
          "TRANSVERSELY_ANISOTROPIC_ELASTIC_PLASTIC": 37, "BARLAT_YLD2000": 133, "PLASTIC_KINEMATIC": 3,
          "POWER_LAW_PLASTICITY": 18, "KINEMATIC_HARDENING_TRANSVERSELY_ANISOTROPIC": 125,
-         "KINEMATIC_HARDENING_BARLAT89": 226, "SIMPLIFIED_JOHNSON_COOK": 98, "JOHNSON_COOK": 15}
-READ = "003, 015, 018, 024, 036, 037, 098, 122, 125, 133, 226"
+         "KINEMATIC_HARDENING_BARLAT89": 226, "KINEMATIC_HARDENING_BARLAT2000": 242,
+         "SIMPLIFIED_JOHNSON_COOK": 98, "JOHNSON_COOK": 15}
+READ = "003, 015, 018, 024, 036, 037, 098, 122, 125, 133, 226, 242"
 # Units by Young's modulus of a metal: its range, the factors on lengths and on stresses, mm and MPa here.
 UNITS = {"mm MPa": (3e4, 4.5e5, 1.0, 1.0), "mm GPa": (30.0, 450.0, 1.0, 1e3), "m Pa": (3e10, 4.5e11, 1e3, 1e-6)}
 ROWS = {3: ("MID RO E PR SIGY ETAN BETA", "SRC SRP FS VP"),
@@ -40,18 +43,21 @@ ROWS = {3: ("MID RO E PR SIGY ETAN BETA", "SRC SRP FS VP"),
         24: ("MID RO E PR SIGY ETAN FAIL TDEL", "C P LCSS LCSR VP unused RFILTF",
              "EPS1 EPS2 EPS3 EPS4 EPS5 EPS6 EPS7 EPS8", "ES1 ES2 ES3 ES4 ES5 ES6 ES7 ES8"),
         36: ("MID RO E PR HR P1 P2 ITER", "M R00 R45 R90 LCID E0 SPI P3"),
-        37: ("MID RO E PR SIGY ETAN R HLCID", "unused1 unused2 unused3 ICFLD unused5 STRAINLT"),
+        37: ("MID RO E PR SIGY ETAN R HLCID", "IDSCALE EA COE ICFLD unused5 STRAINLT"),
         98: ("MID RO E PR VP", "A B N C PSFAIL SIGMAX SIGSAT EPSO"),
         122: ("MID RO E PR HR P1 P2", "R00 R45 R90 LCID E0"),
         125: ("MID RO E PR R HLCID OPT", "CB Y SC K RSAT SB H SC2", "EA COE IOPT C1 C2"),
         133: ("MID RO E PR FIT BETA ITER ISCALE", "K E0 N C P HARD A"),
-        226: ("MID RO E PR M R00 R45 R90", "CB Y SC K RSAT SB H HLCID", "AOPT IOPT C1 C2 unused EA COE")}
+        226: ("MID RO E PR M R00 R45 R90", "CB Y SC K RSAT SB H HLCID", "AOPT IOPT C1 C2 unused EA COE"),
+        242: ("MID RO E PR EA COE M", "ALPHA1 ALPHA2 ALPHA3 ALPHA4 ALPHA5 ALPHA6 ALPHA7 ALPHA8",
+              "CB Y SC K RSAT SB H", "AOPT unused IOPT C1 C2")}
 CHABOCHE = "CRC1 CRA1 CRC2 CRA2 CRC3 CRA3 CRC4 CRA4"
 AXES = {36: ("AOPT C P VLCID unused PB NLP HTB", "unused1 unused2 unused3 A1 A2 A3 HTC HTD",
              "V1 V2 V3 D1 D2 D3 BETA HTFLAG"),
         122: ("AOPT", "unused1 unused2 unused3 A1 A2 A3", "V1 V2 V3 D1 D2 D3 BETA"),
         133: ("AOPT OFFANG P4 HTFLAG HTA HTB HTC HTD", "unused1 unused2 unused3 A1 A2 A3", "V1 V2 V3 D1 D2 D3 USRFAIL"),
-        226: (ROWS[226][2], "XP YP ZP A1 A2 A3", "V1 V2 V3 D1 D2 D3 BETA")}
+        226: (ROWS[226][2], "XP YP ZP A1 A2 A3", "V1 V2 V3 D1 D2 D3 BETA"),
+        242: (ROWS[242][3], "unused1 unused2 unused3 A1 A2 A3", "V1 V2 V3 D1 D2 D3 BETA")}
 RATES = "this dependence on the strain rate is not available"
 TOTAL = "VP = 0 takes the rate of the total strain, the laws here that of the plastic strain: VP = 1 is taken over"
 ADDED = ("with VP = 1 and SIGY the rate adds SIGY (rate/C)^(1/P) to the curve, the law here multiplies it: SIGY = 0 "
@@ -94,7 +100,8 @@ def law_of(deck: Deck, card: Card, units: Units, axes: np.ndarray) -> Law:
     number = number_of(card)
     readers: dict[int, Callable[[Deck, Card, Units, Law], int]] = {
         3: bilinear, 15: heated_johnson_cook, 18: power_law, 24: piecewise, 36: barlat_lian, 37: transverse,
-        98: johnson_cook, 122: hill, 125: two_surfaces, 133: yld2000, 226: two_surfaces_barlat}
+        98: johnson_cook, 122: hill, 125: two_surfaces, 133: yld2000, 226: two_surfaces_barlat,
+        242: two_surfaces_yld2000}
     if number not in readers:
         raise Problem(f"{card.place}: error: the material {card.keyword} of the blank is not read; expected *MAT_ "
                       + READ)
@@ -133,7 +140,7 @@ def use_rigid(card: Card) -> None:
 
 def hill48(r: Sequence[float]) -> str:
     """Return Hill's criterion by the r-values at 0, 45 and 90 degrees."""
-    return "hill48 " + " ".join(f"r{angle}={value:.6g}" for angle, value in zip((0, 45, 90), r))
+    return "hill48 " + " ".join(f"r{angle}={value:.9g}" for angle, value in zip((0, 45, 90), r))
 
 
 def bilinear(deck: Deck, card: Card, units: Units, law: Law) -> int:
@@ -231,7 +238,7 @@ def heated_johnson_cook(deck: Deck, card: Card, units: Units, law: Law) -> int:
 
 
 def transverse(deck: Deck, card: Card, units: Units, law: Law) -> int:
-    """*MAT_037: Hill's criterion with one r-value."""
+    """*MAT_037: Hill's criterion with one r-value; with _ECHANGE a modulus that falls."""
     row, second = row_of(card, 0), row_of(card, 1)
     r = abs(row.number("R", 1.0)) or 1.0
     law.criterion = hill48((r, r, r))
@@ -240,6 +247,8 @@ def transverse(deck: Deck, card: Card, units: Units, law: Law) -> int:
         row.leave("HLCID goes before", "SIGY ETAN")
     law.hardening = by_curve(deck, number, units, law, row.place) if number else linear(
         units, law, row.number("SIGY"), row.number("ETAN"), row.place)
+    chord(second, units, law)
+    second.leave("a modulus by a curve is not available", "IDSCALE")
     second.leave("a forming limit curve: dd3 fld --curve", "ICFLD STRAINLT")
     return 0
 
@@ -341,6 +350,24 @@ def two_surfaces_barlat(deck: Deck, card: Card, units: Units, law: Law) -> int:
     return 2
 
 
+def two_surfaces_yld2000(deck: Deck, card: Card, units: Units, law: Law) -> int:
+    """*MAT_242: Yoshida and Uemori's law with the criterion Yld2000-2d."""
+    first, third = row_of(card, 0), row_of(card, 1)
+    law.criterion = eight(third, positive(first.number("M"), "M", first.place))
+    yoshida_uemori(row_of(card, 2), row_of(card, 3), units, law, first)
+    return 3
+
+
+def eight(row: Row, exponent: float, factor: bool = False) -> str:
+    """Return Yld2000-2d by its coefficients; factor: scaled to the rolling direction."""
+    alpha = np.array([row.number(f"ALPHA{k}") for k in range(1, 9)])
+    if not alpha.any():
+        raise Problem(f"{row.place}: error: all coefficients of Yld2000 are 0")
+    if factor and abs((along := float(yld2000_of(alpha, exponent)(np.array([1.0, 0.0, 0.0])))) - 1) > 1e-9:
+        alpha = alpha / along
+    return "yld2000 " + " ".join(f"alpha{k}={value:.9g}" for k, value in enumerate(alpha, 1)) + f" m={exponent:g}"
+
+
 def hill(deck: Deck, card: Card, units: Units, law: Law) -> int:
     """*MAT_122: Hill (1948) by r-values."""
     law.criterion = hill48(r_values(row_of(card, 1)))
@@ -356,25 +383,21 @@ def yld2000(deck: Deck, card: Card, units: Units, law: Law) -> int:
     second.leave(RATES, "C P")
     if exponent < 0:
         at, exponent = 3, -exponent
-        card.row(2, CHABOCHE).leave("back-stresses of this material are not taken over")
     if first.number("FIT"):
         at = measured2000(card, at, exponent, law)
     else:
-        third = card.row(at, "ALPHA1 ALPHA2 ALPHA3 ALPHA4 ALPHA5 ALPHA6 ALPHA7 ALPHA8")
-        alpha = [third.number(f"ALPHA{k}") for k in range(1, 9)]
-        if not any(alpha):
-            raise Problem(f"{third.place}: error: all coefficients of Yld2000 are 0")
-        law.criterion = "yld2000 " + " ".join(f"alpha{k}={value:.8g}" for k, value in enumerate(alpha, 1)) \
-            + f" m={exponent:g}"
+        law.criterion = eight(card.row(at, ROWS[242][1]), exponent, not first.number("ISCALE"))
     rule = second.label("HARD")
     if rule < 0:
         second.leave("HARD < 0 takes the curve", "K E0 N")
-        law.hardening = by_curve(deck, -rule, units, law, second.place)
+        law.hardening = (by_table if -rule in deck.curves.tables else by_curve)(deck, -rule, units, law, second.place)
     elif rule in (0, 1):
         law.hardening = swift(units, law, (second.number("K"), second.number("N"), second.number("E0")), second.place)
     else:
         raise Problem(f"{second.place}: error: the hardening rule HARD = {rule} is not read; expected 1, or the "
                       "negative number of a curve")
+    if second.number("A") < 0:
+        chaboche(card.row(2, CHABOCHE), units, law)
     return at + 1
 
 
