@@ -384,3 +384,27 @@ def test_undetermined(program):
     write("mu.txt", [5, 5, 5], [0.12, 0.13, 0.14])
     text, _ = identified(program, "--friction", "power", "--friction-data", "mu.txt")
     assert "measured at 1 pressure, which does not determine n, friction" in text
+
+
+@with_library
+def test_teodosiu_hu(program):
+    """Check the law of Teodosiu and Hu from tension, compression and tension, with the parameters of latent structures
+    given: its stresses within 0.2 MPa at the measured strains and its parameters within a tenth, as curves determine
+    them; a curve without reversal is refused."""
+    law = "Y0=120 CR=28 Rsat=80 CX=200 X0=10 Ssat=240 CSD=4 CSL=4 nL=1 CP=2.2 nP=25 f=0.7 r=4"
+    point, strain, rows = dd3.material({**STEEL, "hardening": f"teodosiu_hu {law}"}).point(), 0.0, []
+    for end, steps in ((0.15, 600), (-0.05, 800), (0.1, 600)):
+        step = (end - strain) / steps
+        for i in range(steps):
+            point.pull(step)
+            strain += step
+            rows += [(strain, point.stress[0])] * (i % 25 == 24)
+    write("curve.txt", *zip(*rows))
+    text, said = identified(program, "teodosiu_hu", "curve.txt", "--young", 206000, "--starts", 1, "--fix",
+                            "hardening.CSL=4", "hardening.nL=1", "hardening.r=4", command="fit")
+    assert float(re.search(r"largest (\S+) MPa", said)[1]) < 0.2 and "no tension and compression" not in said
+    wanted = {key: float(value) for key, value in re.findall(r"(\w+)=(\S+)", law)}
+    assert numbers(text, "hardening") == pytest.approx(wanted, rel=0.1), said
+    write("curve.txt", *zip(*rows[:20]))
+    assert "no back-stress can be identified" in call("fit", "steel", "teodosiu_hu", "curve.txt", "--program", program,
+                                                      expect=2)

@@ -14,9 +14,12 @@ from dd3.identify.measured_table import compared, misfit
 from dd3.identify.measurements import TENSION, read_curve
 
 MISSED_CURVE = 0.01  # root mean square of the difference, over the largest stress, that is noted
-LAWS = ("linear", "swift", "voce", "swift_voce", "ludwik", "hockett_sherby", "table", "yoshida_uemori")
-REVERSING = ("yoshida_uemori",)  # laws with a back-stress of their own
+LAWS = ("linear", "swift", "voce", "swift_voce", "ludwik", "hockett_sherby", "table", "yoshida_uemori",
+        "teodosiu_hu")
+REVERSING = ("yoshida_uemori", "teodosiu_hu")  # laws with a back-stress of their own
 BACKSTRESSES = {"prager": ("k",), "lemaitre_chaboche": ("CX", "Xsat")}
+# Parameters without influence on tension and compression: those of the latent structures.
+NOT_IN_CURVES = {"teodosiu_hu": {"CSL": 1.0, "nL": 1.0, "r": 0.0}}
 
 
 class Curve(NamedTuple):
@@ -39,7 +42,9 @@ def law_start(name: str, plastic: np.ndarray, stress: np.ndarray) -> dict[Any, f
         "hockett_sherby": {"Y0": first, "Ysat": first + 1.2 * rise, "N": 2 / end, "q": 0.8},
         "swift_voce": {"alpha": 0.5, **swift, **voce}, "table": table_start(plastic, stress),
         "yoshida_uemori": {"Y": 0.8 * first, "B": 0.4 * first, "C": 200.0, "m": 1 / end, "b_sat": 0.1 * last,
-                           "Rsat": 0.7 * rise, "h": 0.5}}
+                           "Rsat": 0.7 * rise, "h": 0.5},
+        "teodosiu_hu": {"Y0": 0.8 * first, "CR": 8 / end, "Rsat": 0.3 * rise, "CX": 100.0, "X0": 0.1 * first,
+                        "Ssat": 0.8 * rise, "CSD": 1 / end, "CP": 2.0, "nP": 20.0, "f": 0.7}}
     return laws[name]
 
 
@@ -62,7 +67,7 @@ def hardening_lines(name: str, values: dict[Any, float], digits: int = 10) -> li
     elif name == "yoshida_uemori":
         lines = ["hardening = " + law_text(name, own | {"B": own["Y"] + own["B"]}, digits)]
     else:
-        lines = ["hardening = " + law_text(name, own, digits)]
+        lines = ["hardening = " + law_text(name, {**NOT_IN_CURVES.get(name, {}), **own}, digits)]
     for law in dict.fromkeys(key[:2] for key in values if isinstance(key, tuple)):
         part = {key[2]: value for key, value in values.items() if isinstance(key, tuple) and key[:2] == law}
         lines.append("backstress = " + law_text(law[0], part, digits))
@@ -109,7 +114,7 @@ def hardening_start(law: str, backstresses: Sequence[str], curve: Curve, young: 
     for number, backstress in enumerate(backstresses):
         first = {"k": most, "CX": 15 * 8**number, "Xsat": 0.15 * most}
         start.update({(backstress, number, name): first[name] for name in BACKSTRESSES[backstress]})
-    highest = {"n": 1, "q": 1, "alpha": 1, "h": 1}
+    highest = {"n": 1, "q": 1, "alpha": 1, "h": 1, "f": 1, "nP": 1000}
     return {name: (np.log(value), np.log(value / 300), np.log(highest.get(name, value * 300)))
             for name, value in start.items() if name not in (fixed or {})}
 
@@ -217,6 +222,10 @@ def hardening(model: Model, tests: Sequence[Test], points: Points, search: Searc
     far = np.linalg.norm(weight * (values - stress))
     notes = fit.left_open(point, "left as at the start", "other values of the rest may do as well") if sought else []
     notes += fit.at_ends(point)
+    if model.law in NOT_IN_CURVES:
+        names = [name for name in NOT_IN_CURVES[model.law] if name not in model.fixed]
+        notes += [f"no tension and compression determines {', '.join(names)}, which act after a change to another "
+                  "direction only: --fix hardening.NAME=VALUE"] * bool(names)
     if far > MISSED_CURVE:
         notes.append(f"the curve{'s are' if len(tests) > 1 else ' is'} missed by {100 * far:.1f} % of "
                      f"{'their' if len(tests) > 1 else 'its'} largest stress: another law may fit "

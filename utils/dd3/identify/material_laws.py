@@ -17,6 +17,7 @@ from dd3.identify import factors, fracture, fracture_table, modulus
 from dd3.identify.factors import RATE, TEMPERATURE, Factor, Ratios
 from dd3.identify.hardening import (
     LAWS,
+    NOT_IN_CURVES,
     Curve,
     Model,
     Test,
@@ -193,7 +194,7 @@ def find_hardening(task: Task, found: Measured, yields: str, points: Points, sea
 def hardening_names(model: Model, test: Test, young: float) -> list[str]:
     """Return the names of the parameters of the hardening law."""
     names = hardening_start(model.law, (), test.curve, young) if model.law in LAWS else {}
-    return [name for name in names if isinstance(name, str)]
+    return [name for name in names if isinstance(name, str)] + list(NOT_IN_CURVES.get(model.law, ()))
 
 
 def slowest_first(model: Model, tests: Sequence[Test], points: Points, search: Search, laws: Laws
