@@ -29,7 +29,6 @@ import argparse
 import re
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -40,36 +39,14 @@ from matplotlib.figure import Figure
 from dd3.columns import every
 from dd3.command import new_parser
 from dd3.errors import LOG, Problem
-from dd3.identify import fracture
+from dd3.identify import friction
 from dd3.identify.criterion import CRITERIA, criterion
-from dd3.identify.hardening import BACKSTRESSES, LAWS, Curve, hardening, measured_curve, reverses
-from dd3.identify.least_squares import UNIT, NoStart, Points
+from dd3.identify.hardening import LAWS, Curve, reverses
+from dd3.identify.least_squares import NoStart, Points
+from dd3.identify.material_laws import Laws, Measured, find_laws, find_modulus, picture, read_measured
 from dd3.identify.measurements import KEYS, TENSION, Datum, from_argument, read_data
+from dd3.identify.task import FRACTURE, YOUNG, Task, add_curve, check_task, split_fixed
 from dd3.plot.figures import save
-from dd3.programs import add_program
-
-
-@dataclass
-class Task:
-    """What is identified, and from what: the criterion, if it is given, from the data, the hardening from the curve,
-    the law of fracture from its tests."""
-
-    name: str
-    program: str
-    hardening: str | None = None  # name of a law to identify, or a law with its values
-    criterion: str | None = None
-    given: Mapping[str, float] = field(default_factory=dict)  # parameters of the criterion
-    yields: str = "von_mises"  # criterion of the curve where none is identified
-    data: list[Datum] = field(default_factory=list)
-    curve: str | None = None  # path of the table
-    fracture: str | None = None  # likewise
-    fracture_exponent: float = 0.1  # n of Hosford and Coulomb
-    plastic_strain: bool = False
-    backstresses: Sequence[str] = ()
-    young: float = 2.1e5  # MPa
-    poisson: float = 0.3
-    starts: int = 4
-    seed: int = 1
 
 
 def folded(key: str, text: str) -> list[str]:
@@ -90,36 +67,13 @@ def block(name: str, elastic: str, yields: str, hardens: Sequence[str], table: S
              f"# {'':<32}{'measured':>10}{'identified':>12}{'difference':>12}{'weight':>8}"]
     lines += [f"# {line}" for line in table]
     lines += [f"# Note: {note}" for note in notes]
-    lines += [f"*MATERIAL {name}", elastic]
+    lines.append(f"*MATERIAL {name}")
+    for line in elastic.split("\n"):
+        lines += folded(*line.strip().split(" = ", 1))
     lines += folded("yield", yields)
     for line in hardens:
-        lines += folded(*line.split(" = "))
+        lines += folded(*line.split(" = ", 1))
     return "\n".join(lines) + "\n"
-
-
-def fixed_value(text: str) -> tuple[str, float]:
-    """Return name and value of an argument of --fix."""
-    name, _, value = text.partition("=")
-    try:
-        return name, float(value)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{text}: expected name=value") from None
-
-
-def add_curve(parser: argparse.ArgumentParser) -> None:
-    """Add the options of a tension curve, of its fit and of the result."""
-    add = parser.add_argument
-    add("--backstress", nargs="+", choices=BACKSTRESSES, default=[], metavar="LAW",
-        help=f"back-stresses to identify with it ({', '.join(BACKSTRESSES)}), from a curve with a reversal")
-    add("--plastic-strain", action="store_true", help="the strains of the curve are plastic strains")
-    add("--young", type=float, default=2.1e5, help="Young's modulus, MPa (2.1e5)")
-    add("--poisson", type=float, default=0.3, help="Poisson's ratio (0.3)")
-    add("--starts", type=int, default=4, help="number of starts: the first from isotropy, the others at random (4)")
-    add("--seed", type=int, default=1, help="seed of the random starts (1)")
-    add_program(parser)
-    add("--output", metavar="FILE", help="file to write (default: NAME.dat)")
-    add("--plot", metavar="FILE", help="picture to draw: measured values and identified curves, or of --fracture alone "
-        "the strains")
 
 
 def command_line() -> argparse.ArgumentParser:
@@ -128,8 +82,6 @@ def command_line() -> argparse.ArgumentParser:
     add = parser.add_argument
     add("name", help="name of the material")
     add("--criterion", choices=CRITERIA, help="yield criterion to identify (without it: von_mises)")
-    add("--fix", type=fixed_value, action="extend", nargs="+", default=[], metavar="NAME=VALUE",
-        help="parameters of the criterion that are given, such as its exponent (default: m=8, k=4; cpb06 C11=1 m=2)")
     add("--data", metavar="FILE", help="measured values, one in a line: " + ", ".join(KEYS))
     add("--r", nargs="+", default=[], metavar="ANGLE:R[:WEIGHT]", help="r-values in tension (weight 0.5)")
     add("--stress", nargs="+", default=[], metavar="ANGLE:S[:WEIGHT]",
@@ -146,17 +98,16 @@ def command_line() -> argparse.ArgumentParser:
     add("--curve", metavar="FILE",
         help="tension curve along rolling; with --backstress or yoshida_uemori it goes on in compression")
     add("--fracture", metavar="FILE", help="triaxiality, Lode angle and strain to fracture of tests")
-    add("--fracture-exponent", type=float, default=0.1, metavar="N", help="exponent n of Hosford and Coulomb (0.1)")
+    add("--fracture-law", choices=FRACTURE, default=FRACTURE[0], help="law of fracture (hosford_coulomb); table: "
+        "straight lines through the tests, at each Lode angle if the table has any")
+    add("--fracture-exponent", type=float, metavar="N",
+        help="exponent n of Hosford and Coulomb (0.1), or of the growth of the damage of a table (1)")
+    add("--friction", nargs="+", choices=friction.LAWS, default=[], metavar="LAW",
+        help=f"laws of friction to identify ({', '.join(friction.LAWS)}), whose factors are multiplied")
+    add("--friction-data", metavar="FILE",
+        help="coefficients of friction by pressure (MPa), speed (mm/s) and plastic strain, as the laws need them")
     add_curve(parser)
     return parser
-
-
-def check_options(parser: argparse.ArgumentParser, name: str, young: float, starts: int) -> None:
-    """Check the options that `fit` has too."""
-    if not re.fullmatch(r"[A-Za-z][\w.-]*", name):
-        parser.error(f"{name}: a name begins with a letter and has letters, digits, _ . - only")
-    if young <= 0 or starts < 1:
-        parser.error("--young and --starts are positive")
 
 
 def arguments(words: Sequence[str] | None) -> tuple[Task, str | None, str | None]:
@@ -165,27 +116,11 @@ def arguments(words: Sequence[str] | None) -> tuple[Task, str | None, str | None
     options = vars(parser.parse_args(words))
     texts = {key: options.pop(key) for key in KEYS}
     output, plot, file = (options.pop(key) for key in ("output", "plot", "data"))
-    task = Task(given=dict(options.pop("fix")), backstresses=options.pop("backstress"), **options)
+    task = Task(**split_fixed(options.pop("fix")), backstresses=options.pop("backstress"), **options)
     check_task(parser, task)
     if task.criterion:
         task.data = measured(file, texts)
     return task, output, plot
-
-
-def check_task(parser: argparse.ArgumentParser, task: Task) -> None:
-    """Check that the options go together."""
-    fits = bool(task.hardening) and "=" not in str(task.hardening) and ":" not in str(task.hardening)
-    if fits and task.hardening not in LAWS:
-        parser.error(f"--hardening: one of {', '.join(LAWS)}, or a law with all its values")
-    if fits != bool(task.curve):
-        parser.error("--curve and the name of a law in --hardening go together")
-    if task.backstresses and not fits:
-        parser.error("--backstress goes with --curve")
-    if not task.criterion and not fits and not task.fracture:
-        parser.error("nothing to identify: --criterion, --hardening with --curve, or --fracture")
-    if not 0 < task.fracture_exponent <= 1:
-        parser.error("--fracture-exponent is above 0 and at most 1")
-    check_options(parser, task.name, task.young, task.starts)
 
 
 def measured(path: str | None, texts: Mapping[str, Sequence[str]]) -> list[Datum]:
@@ -206,11 +141,12 @@ def picture_of(text: str, program: str, data: Sequence[Datum], curve: Curve | No
 
     found: the identified stresses of a curve that turns, drawn in place of tension.
     """
-    from dd3.plot.point import picture
+    from dd3.plot.point import picture as picture_of_points
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "material.dat"
-        path.write_text(re.sub(r"  backstress = .*\n", "", text), encoding="utf-8")
-        figure: Figure = picture([path], program, 0.2 if curve is None else max(curve.strain.max(), 0.02))
+        # Tension is drawn without back-stresses, at rest and at the reference temperature.
+        path.write_text(re.sub(r"  (?:backstress|rate|temperature) =(?:.*&\n)*.*\n", "", text), encoding="utf-8")
+        figure: Figure = picture_of_points([path], program, 0.2 if curve is None else max(curve.strain.max(), 0.02))
     if legend := figure.axes[-1].get_legend():
         legend.remove()  # each panel has its own
     axes = figure.axes
@@ -247,52 +183,76 @@ def on_surface(d: Datum) -> tuple[float, float] | None:
 
 
 def identify(task: Task, output: str | None = None, plot: str | None = None) -> None:
-    """Identify the parameters of a criterion, without one of the hardening beside a given criterion, and of the law of
-    fracture; write the file."""
-    points = Points(task.program, task.young, task.poisson)
-    yields, hardens = task.yields, [f"hardening = {task.hardening or UNIT}"]
-    table: list[str] = []
-    notes: list[str] = []
-    curve, values, tests = None, None, None
+    """Identify the parameters of a criterion, without one of the laws beside a given criterion, and write the file."""
+    found = read_measured(task)
+    points = Points(task.program, task.young or YOUNG, task.poisson)
+    yields, table, notes = task.yields, list[str](), list[str]()
     try:
+        elastic = find_modulus(task, found, points)
+        if elastic:
+            table, notes = elastic.table, elastic.notes
         if task.criterion:
-            yields, table, notes = criterion(task.criterion, task.given, points, task.data, task.starts, task.seed)
-        if task.curve:
-            law = str(task.hardening)
-            curve = measured_curve(task.curve, task.young, reverses(law, task.backstresses), task.plastic_strain)
-            hardens, more, other, values = hardening(law, task.backstresses, curve, points, yields, task.starts,
-                                                     task.seed)
+            yields, more, other = criterion(task.criterion, task.given, points, task.data, task.starts, task.seed)
             table, notes = table + more, notes + other
-        if task.fracture:
-            tests = fracture.read_tests(task.fracture)
-            broken, more, other = fracture.fracture(tests, task.fracture_exponent, points, task.starts, task.seed)
-            hardens, table, notes = [*hardens, f"fracture = {broken}"], table + more, notes + other
+        laws = find_laws(task, found, yields, points)
+        laws.elastic = elastic
     except NoStart:
         raise Problem("error: the program refused the parameters of every start; it said: "
                       f"{points.refusal or 'the points did not converge'}\n"
                       "  expected: more --starts, or other values of --fix") from None
+    table, notes = table + laws.table, notes + laws.notes
     if not task.hardening:
         notes = [*notes, "no hardening was given: the flow stress of 100 is only a unit"]
-    text = block(task.name, points.elastic, yields, hardens, table, notes)
+    text = block(task.name, points.elastic, yields, laws.lines, table, notes)
+    timed = "  duration = 1\n" if laws.text_of("rate") else ""
     code, said, _ = points.run(text + f"*POINT p\n  material = {task.name}\n  control = {TENSION}\n"
-                               "  target = 1e-6 0 0 0 0 0 steps=1\n")
+                               f"  target = 1e-6 0 0 0 0 0 steps=1\n{timed}")
     if code != 0:
         raise Problem(said.strip())
-    figure = None
-    if plot and tests and not task.criterion and not task.curve:
-        figure = fracture.picture(broken, tests, points)
+    pictures = draw_all(task, found, laws, points, text) if plot else []
     points.bar.close()
-    path = Path(output or f"{task.name}.dat")
+    write(output or f"{task.name}.dat", text, f"{points.runs} runs of the program; ")
+    for number, figure in enumerate(pictures):
+        path = Path(str(plot))
+        save(figure, path.with_stem(path.stem + "_laws") if number else path, 100)
+
+
+def draw_all(task: Task, found: Measured, laws: Laws, points: Points, text: str) -> list[Figure]:
+    """Return the picture of criterion and curve, if there is one of them, and that of the other laws."""
+    figures = []
+    curve = found.tests[0].curve if task.curve else None
+    if task.criterion or curve:
+        turns = curve and reverses(task.hardening or "-", task.backstresses)
+        figures.append(picture_of(text, task.program, task.data, curve, laws.stresses[0] if turns else None))
+    other = picture(task, found, laws, points)
+    return [*figures, other] if other else figures
+
+
+def write(path: str, text: str, said: str = "") -> None:
+    """Write a result, and show it."""
     try:
-        path.write_text(text, encoding="utf-8")
+        Path(path).write_text(text, encoding="utf-8")
     except OSError as error:
         raise Problem(f"{path}: error: {error.strerror}") from None
-    LOG.info(f"{text}\n{points.runs} runs of the program; written to {path}")
+    LOG.info(f"{text}\n{said}written to {path}")
+
+
+def identify_friction(task: Task, output: str | None = None, plot: str | None = None) -> None:
+    """Identify laws of friction, and write their lines of *TOOL."""
+    path = str(task.friction_data)
+    tests = friction.read_tests(path, task.friction, task.given_of)
+    lines, table, notes, values = friction.friction(task.friction, tests, task.given_of, path, task.starts, task.seed)
+    head = [f"# Friction of {task.name}, identified by dd3: lines of *TOOL",
+            f"# {'':<32}{'measured':>10}{'identified':>12}{'difference':>12}"]
+    head += [f"# {line}" for line in table] + [f"# Note: {note}" for note in notes]
+    for line in lines:
+        head += folded(*line.split(" = ", 1))
+    write(output or f"{task.name}.dat", "\n".join(head) + "\n")
     if plot:
-        found = values if reverses(task.hardening or "", task.backstresses) else None
-        save(figure or picture_of(text, task.program, task.data, curve, found), plot, 100)
+        save(friction.picture(task.friction, tests, values), plot, 100)
 
 
 def main(words: Sequence[str] | None = None) -> None:
     """Identify the material of the command line."""
-    identify(*arguments(words))
+    task, output, plot = arguments(words)
+    (identify_friction if task.friction else identify)(task, output, plot)

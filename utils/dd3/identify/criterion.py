@@ -66,7 +66,7 @@ def sought_parameters(law: str, given: Mapping[str, float], data: list[Datum]
 def test_paths(data: list[Datum]) -> dict[tuple[str, float], LoadPath]:
     """Return the paths of the tests of the data, each once, by test."""
     paths = {d.same_test(): d.path() for d in data}
-    return {test: (control, angle, [(values, 1) for values in targets])
+    return {test: LoadPath(control, angle, [(values, 1) for values in targets])
             for test, (control, angle, targets) in paths.items()}
 
 

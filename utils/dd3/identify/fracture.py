@@ -6,13 +6,12 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from matplotlib.figure import Figure
+from matplotlib.axes import Axes
 
 from dd3.account import Account
 from dd3.columns import STRAIN, Column, read_columns
 from dd3.errors import LOG, Problem
 from dd3.identify.least_squares import Fit, LoadPath, Points, law_text, report, rounded
-from dd3.plot.figures import new_figure
 
 LAW = "hosford_coulomb"
 STRESSES = "s11 s22 s33 s12 s23 s13"
@@ -58,8 +57,8 @@ def stress_of(triaxiality: float, lode: float) -> np.ndarray:
 def strains_to_fracture(points: Points, laws: Sequence[str], triaxiality: np.ndarray, lode: np.ndarray) -> list[Any]:
     """Return the strains to fracture at stress states for each law, its text in the input, as the program computes
     them: plastic strain over damage; None for a law that it refuses."""
-    paths: list[LoadPath] = [(STRESSES, 0.0, [([*(EQUIVALENT * stress_of(*state)), 0, 0, 0], 1)])
-                             for state in zip(triaxiality, lode)]
+    paths = [LoadPath(STRESSES, 0.0, [([*(EQUIVALENT * stress_of(*state)), 0, 0, 0], 1)])
+             for state in zip(triaxiality, lode)]
     found = points.rows([(*POINT, f"fracture = {law}") for law in laws], paths)
     with np.errstate(divide="ignore"):  # no damage: no fracture
         return [None if rows is None else np.divide(*np.array([[part[-1]["eqps"], part[-1]["fracture_damage"]]
@@ -94,22 +93,19 @@ def fracture(tests: Tests, exponent: float, points: Points, starts: int, seed: i
     return text, table, notes
 
 
-def picture(text: str, tests: Tests, points: Points) -> Figure:
-    """Return the strains to fracture over the triaxiality: of a law in plane stress, and of tests with those that the
+def draw(axes: Axes, text: str, tests: Tests, points: Points) -> None:
+    """Draw the strains to fracture over the triaxiality: of a law in plane stress, and of tests with those that the
     law gives at their stress states."""
     angles = np.radians(np.arange(-45, 46, 1))
     first, second = np.cos(angles), np.sin(angles)
     equivalent = np.sqrt(first**2 - first * second + second**2)
     triaxiality = (first + second) / 3 / equivalent
     inside = np.clip(-13.5 * triaxiality * (triaxiality**2 - 1 / 3), -1, 1)
+    text = text.partition(" exponent=")[0]  # linear damage, for its strain to fracture
     line, values = (strains_to_fracture(points, [text], *states)[0]
                     for states in ((triaxiality, 1 - 2 / np.pi * np.arccos(inside)), tests[:2]))
-    figure, axes = new_figure((7, 4.5))
     axes.plot(triaxiality, line, label="identified, plane stress")
     axes.plot(tests.triaxiality, values, "x", color="C0", label="identified, of the tests")
     axes.plot(tests.triaxiality, tests.strain, "s", color="k", markerfacecolor="none", label="measured")
     top = 1.6 * max(tests.strain.max(), values.max())
     axes.set(xlabel="triaxiality", ylabel="plastic strain to fracture", ylim=(0, min(top, 1.1 * line.max())))
-    axes.grid(True, color="0.9")
-    axes.legend(frameon=False)
-    return figure

@@ -4,7 +4,7 @@
 import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.optimize import differential_evolution, least_squares
@@ -22,8 +22,37 @@ EVALUATIONS = 60  # at most, in a descent
 STEP = 1e-4  # of the differences, over the size of the parameter
 END = 3e-3  # fraction of a range: a note if a parameter is nearer to its end
 
-# Control, angle to the rolling direction, targets with their steps.
-LoadPath = tuple[str, float, list[tuple[Sequence[float], int]]]
+
+class LoadPath(NamedTuple):
+    """Control, angle to the rolling direction, targets with their steps, and rate (1/s) of the first component, which
+    the control prescribes, if the material has a law of the strain rate."""
+
+    control: str
+    angle: float
+    targets: Sequence[tuple[Sequence[float], int]]
+    rate: float | None = None
+
+    def lines(self) -> list[str]:
+        """Return the lines of *POINT."""
+        lines = [f"  angle = {self.angle:.10g}", f"  control = {self.control}"]
+        lines += [f"  target = {' '.join(f'{value:.12g}' for value in values)} steps={steps}"
+                  for values, steps in self.targets]
+        if self.rate:
+            ways = np.abs(np.diff([values[0] for values, _ in self.targets], prepend=0))
+            lines += ["  duration = &"] + [f"    {way / self.rate:.12g} &" for way in ways]
+            lines[-1] = lines[-1].removesuffix(" &")
+        return lines
+
+
+class Search(NamedTuple):
+    """Number of starts, and the seed of the random ones."""
+
+    starts: int
+    seed: int
+
+
+# Lines of a material, and its paths.
+Case = tuple[Sequence[str], Sequence[LoadPath]]
 
 
 def law_text(name: str, values: dict[str, float], digits: int = 10) -> str:
@@ -39,16 +68,21 @@ class Points:
         self.elastic = f"  young = {young:g}\n  poisson = {poisson:g}"
         self.refusal, self.bar = "", counter("identification", "runs")
 
-    def deck(self, materials: Sequence[Sequence[str]], paths: list[LoadPath]) -> tuple[str, list[int]]:
+    def set_elastic(self, young: float, modulus: str) -> None:
+        """Set Young's modulus, MPa, and the law of the modulus, its text, of all further runs."""
+        self.young = young
+        poisson = self.elastic.split("\n")[1]
+        self.elastic = f"  young = {young:.6g}\n{poisson}\n  modulus = {modulus}"
+
+    def deck(self, cases: Sequence[Case]) -> tuple[str, list[int]]:
         """Return the input, and the number of the material to which each of its lines belongs."""
         lines, owner = [], []
-        for i, laws in enumerate(materials):
-            block = [f"*MATERIAL m{i}", *self.elastic.split("\n"), *(f"  {line}" for line in laws)]
-            for j, (control, angle, targets) in enumerate(paths):
-                block += [f"*POINT p{i}_{j}", f"  material = m{i}", f"  angle = {angle:.10g}"]
-                block.append(f"  control = {control}")
-                block += [f"  target = {' '.join(f'{value:.12g}' for value in values)} steps={steps}"
-                          for values, steps in targets]
+        for i, (laws, paths) in enumerate(cases):
+            own = {line.split()[0] for line in laws}
+            block = [f"*MATERIAL m{i}", *(line for line in self.elastic.split("\n") if line.split()[0] not in own),
+                     *(f"  {line}" for line in laws)]
+            for j, path in enumerate(paths):
+                block += [f"*POINT p{i}_{j}", f"  material = m{i}", *LoadPath(*path).lines()]
             lines += block
             owner += [i] * len(block)
         return "\n".join(lines) + "\n", owner
@@ -60,16 +94,21 @@ class Points:
         done, points = run_points(self.program, text)
         return done.code, done.errors, points
 
-    def rows(self, materials: Sequence[Sequence[str]], paths: list[LoadPath]) -> list[Any]:
+    def rows(self, materials: Sequence[Sequence[str]], paths: Sequence[LoadPath]) -> list[Any]:
         """Return the rows of each path for each material; None for a material that the program refuses."""
-        result: list[Any] = [None] * len(materials)
-        left = list(range(len(materials)))
+        return self.rows_of([(laws, paths) for laws in materials])
+
+    def rows_of(self, cases: Sequence[Case]) -> list[Any]:
+        """Return the rows of each path for each material, which has paths of its own; None for a material that the
+        program refuses. A line of a material takes the place of that of the elastic ones with the same key."""
+        result: list[Any] = [None] * len(cases)
+        left = list(range(len(cases)))
         while left:
-            text, owner = self.deck([materials[i] for i in left], paths)
+            text, owner = self.deck([cases[i] for i in left])
             code, said, points = self.run(text)
             if code == 0:
                 for i, number in enumerate(left):
-                    result[number] = [points[f"p{i}_{j}"] for j in range(len(paths))]
+                    result[number] = [points[f"p{i}_{j}"] for j in range(len(cases[number][1]))]
                 break
             refused = {owner[int(line) - 1] for line in re.findall(re.escape(POINTS) + r":(\d+): error", said)}
             if code == 2 and refused:
@@ -81,7 +120,7 @@ class Points:
                 break
             else:
                 for number in left:
-                    result[number] = self.rows([materials[number]], paths)[0]
+                    result[number] = self.rows_of([cases[number]])[0]
                 break
         return result
 
