@@ -241,6 +241,7 @@ def main():
 
     tests = [(f"from increments, {name}", call(from_increments, name, options.every))
              for name in ("each", "solid_shell", "motions", "bead", "tilt", "fallback", "increments")]
+    tests += [("from increments, laws", call(from_increments, "laws", 3 * options.every))]
     tests += [(test.__doc__.split(":")[0].rstrip("."), call(test))
               for test in (interrupted, stopped, changed, other_ways, small_disk)]
     raise SystemExit(call_tests(tests))

@@ -66,9 +66,21 @@ CUSHION = (("  penalty = ${p}", "  layer = ${p}"), ('punch.bez"', 'punch.bez"\n 
             "  pin = blank_holder 100 0 0 1\n  pin = blank_holder 100 35 0 1\n  duration = 1"),
            *((text, f"{text}\n  duration = 1") for text in ("force punch 400", "displacement punch 1.8", "x_max y 0.05",
                                                              "free = x_max y", "unload = on")))
+# A material with an internal variable of each kind: two surfaces, rate, temperature, damage, forming limit.
+MANY_LAWS = """  density = 7.85e-9
+  hardening = yoshida_uemori Y=124 B=168 C=200 m=12 b_sat=60 Rsat=190 h=0.5
+  modulus = chord Ea=1.63e5 xi=30.8
+  rate = power m=0.015 reference=1e-4
+  temperature = johnson_cook Tr=20 Tm=500 m=0.8
+  heat_capacity = 4.6e8
+  fracture = table exponent=2 -0.6:2 0:0.7 0.6:0.4
+  forming_limit = -0.2 0.26 0 0.16"""
+LAWS = (("  hardening = swift K=565 e0=0.007117 n=0.259\n  backstress = lemaitre_chaboche CX=5 Xsat=40", MANY_LAWS),
+        ("-22600", "-22600\n  duration = 1"), *((text, f"{text}\n  duration = 1") for text in (
+            "force punch 400", "displacement punch 1.8", "x_max y 0.05", "free = x_max y", "unload = on")))
 # Changes of the deck and settings, by name: restart file often, after each increment, at the ends of phases only;
 # fields by increments; motions and pressures along curves of progress; a draw-bead; a tool that tilts; springs and
-# times; a linear solver that falls back.
+# times; a material of many laws; a linear solver that falls back.
 CASES = {
     "often": ((), ()),
     "each": ((), ("restart=1", "history=5")),
@@ -80,6 +92,7 @@ CASES = {
     "bead": ((("*CONTACT", BEAD),), ("restart=1",)),
     "tilt": ((("  penalty = ${p}", "  layer = ${p}"), ("-22600", "-22600\n  tilt = blank_holder 80 16 0 0")),
              ("restart=1", "p=0.01")),
+    "laws": (LAWS, ("restart=1",)),
     "cushion": (CUSHION, ("restart=1", "p=0.01")),
     "fallback": ((("method = auto", "method = auto\n  tolerance = 1e-15\n  iterations = 1"),), ("restart=3",)),
 }
