@@ -337,6 +337,13 @@ def test_fracture(law, error):
     assert "dtyp" in fields_in(cards.lines) and float(fields_in(cards.lines)["dtyp"]) == 0
 
 
+def test_fracture_of_a_scaled_criterion():
+    """Check that strains to fracture are those of the card, of tension along rolling."""
+    _, block, _ = imported(cards_of(material(SCALED, fracture="table 0:0.7 0.5:0.5")).lines)
+    read = blocks_of(words_of(block.split("fracture =")[1].split("density")[0].replace("&", " ")))
+    assert strain_at(read, 0.1, 0.0) == pytest.approx(0.66 * 1.3**0.5, rel=1e-6)
+
+
 def test_fracture_of_the_law():
     """Check Hosford and Coulomb's strains by the special cases of the page: tension, plane strain and shear."""
     law, b, c, a, n = words_of("hosford_coulomb a=1.4 b=0.9 c=0.05"), 0.9, 0.05, 1.4, 0.1
@@ -410,6 +417,27 @@ def test_run(program):
     subprocess.run([program, "--quiet", "bar.dat"], check=True, capture_output=True)
     said = call("export", "bar.out", "bar.k", "--shells", "--cards")
     assert "left out: the card of the material m: no card" in said and "*MAT" not in Path("bar.k").read_text()
+
+
+def initial(text):
+    """Return the numbers of the initial stresses in a keyword file."""
+    rows = [line for line in text.split("*INITIAL")[1].split("\n*")[0].splitlines() if "e" in line[:12]]
+    return [[float(line[i:i + 10]) for i in range(0, len(line), 10)] for line in rows]
+
+
+def test_plastic_strain_of_a_scaled_criterion(program):
+    """Check that plastic strains are those of the card, of tension along rolling, whose work is the same."""
+    for name, criterion in (("plain", "hill48 F=0.5 G=0.5 H=0.5 N=1.5"), ("scaled", "hill48 F=2 G=2 H=2 N=6")):
+        # The scaled criterion has twice the equivalent stress and half the plastic strain at the same tension.
+        law = "linear Y0=200 H=1000" if name == "plain" else "linear Y0=400 H=4000"
+        Path(f"{name}.dat").write_text(DECK.replace("linear Y0=200 H=1000", law).replace("von_mises", criterion))
+        subprocess.run([program, "--quiet", f"{name}.dat"], check=True, capture_output=True)
+        for form in ("shells", "solids"):
+            call("export", f"{name}.out", f"{name}_{form}.k", "--cards", *["--shells"] * (form == "shells"))
+    for form in ("shells", "solids"):
+        one, other = (Path(f"{name}_{form}.k").read_text() for name in ("plain", "scaled"))
+        assert "sigy" in one and np.allclose(initial(one), initial(other), rtol=2e-3, atol=1e-6)
+        assert fields_in(one.splitlines())["etan"] == fields_in(other.splitlines())["etan"]
 
 
 def test_run_with_a_file(program):
