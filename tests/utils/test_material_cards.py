@@ -81,8 +81,6 @@ def apart(one, other, rate=0.0):
     return np.abs(stress - response(other, rate)).max() / np.abs(stress).max()
 
 
-# ---- fields ----------------------------------------------------------------------------------------------------------
-
 def test_fields():
     """Check that numbers go into ten columns with seven digits or more, apart from the field before where they can."""
     values = (0.3, 7.85e-9, 210000.0, 2.1e11, 1.01005025, 0.00438894219, -8.0, 0.0, 123456789.0, -0.123456789, 1e-30)
@@ -134,8 +132,6 @@ def test_card_by_itself():
     theirs = found["p1"] * (found["e0"] + along["strain"] - elastic)**found["p2"]
     assert np.allclose(along["stress"][5:], theirs[5:], rtol=1e-6)
 
-
-# ---- round trips -----------------------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("number, criterion, keys", [
     (24, "von_mises", {"hardening": "linear Y0=200 H=500"}), (24, "hosford m=4", {"hardening": "perfect Y0=200"}),
@@ -258,8 +254,6 @@ def test_library():
         assert max(difference(one, other)) < 1e-6 and apart(one, other) < 1e-4, name
 
 
-# ---- what has no card ------------------------------------------------------------------------------------------------
-
 @pytest.mark.parametrize("keys, said", [
     ({"criterion": "drucker c=1.5"}, "yield = drucker: Yld2000-2d by eight values"),
     ({"hardening": "teodosiu_hu Y0=120 CR=28 Rsat=80 CX=200 X0=10 Ssat=240 CSD=4 CSL=4 nL=1 CP=2.2 nP=25 f=0.7 r=4"},
@@ -308,8 +302,6 @@ def test_options():
         cards_of(odd)
 
 
-# ---- fracture and limits ---------------------------------------------------------------------------------------------
-
 def strain_at(blocks, triaxiality, lode):
     """Return the strain to fracture of blocks over the Lode angle, straight between them."""
     return np.interp(lode, [angle for angle, _ in blocks], [np.interp(triaxiality, *points.T) for _, points in blocks])
@@ -353,8 +345,6 @@ def test_fracture_of_the_law():
         assert hosford_coulomb(law, np.array([triaxiality]), lode)[0] == pytest.approx(exact, rel=1e-9)
 
 
-# ---- what is read now ------------------------------------------------------------------------------------------------
-
 def test_iscale():
     """Check that the coefficients of *MAT_133 are scaled to the rolling direction with ISCALE = 0, not with 1."""
     alpha = row(*[1.1] * 8)
@@ -376,8 +366,6 @@ def test_forming_limit_of_erosion():
     _, block, left_out = imported([*plain, *added[:3]])
     assert "forming_limit" not in block and any("criteria are not available" in item for item in left_out)
 
-
-# ---- the command -----------------------------------------------------------------------------------------------------
 
 def test_command():
     """Check a material alone by the command: a name of the library, a file, refusals."""
