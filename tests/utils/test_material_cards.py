@@ -81,8 +81,6 @@ def apart(one, other, rate=0.0):
     return np.abs(stress - response(other, rate)).max() / np.abs(stress).max()
 
 
-# ---- fields ----------------------------------------------------------------------------------------------------------
-
 def test_fields():
     """Check that numbers go into ten columns with seven digits or more, apart from the field before where they can."""
     values = (0.3, 7.85e-9, 210000.0, 2.1e11, 1.01005025, 0.00438894219, -8.0, 0.0, 123456789.0, -0.123456789, 1e-30)
@@ -134,8 +132,6 @@ def test_card_by_itself():
     theirs = found["p1"] * (found["e0"] + along["strain"] - elastic)**found["p2"]
     assert np.allclose(along["stress"][5:], theirs[5:], rtol=1e-6)
 
-
-# ---- round trips -----------------------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("number, criterion, keys", [
     (24, "von_mises", {"hardening": "linear Y0=200 H=500"}), (24, "hosford m=4", {"hardening": "perfect Y0=200"}),
@@ -258,8 +254,6 @@ def test_library():
         assert max(difference(one, other)) < 1e-6 and apart(one, other) < 1e-4, name
 
 
-# ---- what has no card ------------------------------------------------------------------------------------------------
-
 @pytest.mark.parametrize("keys, said", [
     ({"criterion": "drucker c=1.5"}, "yield = drucker: Yld2000-2d by eight values"),
     ({"hardening": "teodosiu_hu Y0=120 CR=28 Rsat=80 CX=200 X0=10 Ssat=240 CSD=4 CSL=4 nL=1 CP=2.2 nP=25 f=0.7 r=4"},
@@ -308,8 +302,6 @@ def test_options():
         cards_of(odd)
 
 
-# ---- fracture and limits ---------------------------------------------------------------------------------------------
-
 def strain_at(blocks, triaxiality, lode):
     """Return the strain to fracture of blocks over the Lode angle, straight between them."""
     return np.interp(lode, [angle for angle, _ in blocks], [np.interp(triaxiality, *points.T) for _, points in blocks])
@@ -337,6 +329,13 @@ def test_fracture(law, error):
     assert "dtyp" in fields_in(cards.lines) and float(fields_in(cards.lines)["dtyp"]) == 0
 
 
+def test_fracture_of_a_scaled_criterion():
+    """Check that strains to fracture are those of the card, of tension along rolling."""
+    _, block, _ = imported(cards_of(material(SCALED, fracture="table 0:0.7 0.5:0.5")).lines)
+    read = blocks_of(words_of(block.split("fracture =")[1].split("density")[0].replace("&", " ")))
+    assert strain_at(read, 0.1, 0.0) == pytest.approx(0.66 * 1.3**0.5, rel=1e-6)
+
+
 def test_fracture_of_the_law():
     """Check Hosford and Coulomb's strains by the special cases of the page: tension, plane strain and shear."""
     law, b, c, a, n = words_of("hosford_coulomb a=1.4 b=0.9 c=0.05"), 0.9, 0.05, 1.4, 0.1
@@ -345,8 +344,6 @@ def test_fracture_of_the_law():
             np.sqrt(3) * (1 + c) / (shear + 2 * c))**(1 / n)), (0.0, 0, b * (np.sqrt(3) * (1 + c) / shear)**(1 / n))):
         assert hosford_coulomb(law, np.array([triaxiality]), lode)[0] == pytest.approx(exact, rel=1e-9)
 
-
-# ---- what is read now ------------------------------------------------------------------------------------------------
 
 def test_iscale():
     """Check that the coefficients of *MAT_133 are scaled to the rolling direction with ISCALE = 0, not with 1."""
@@ -369,8 +366,6 @@ def test_forming_limit_of_erosion():
     _, block, left_out = imported([*plain, *added[:3]])
     assert "forming_limit" not in block and any("criteria are not available" in item for item in left_out)
 
-
-# ---- the command -----------------------------------------------------------------------------------------------------
 
 def test_command():
     """Check a material alone by the command: a name of the library, a file, refusals."""
@@ -410,6 +405,27 @@ def test_run(program):
     subprocess.run([program, "--quiet", "bar.dat"], check=True, capture_output=True)
     said = call("export", "bar.out", "bar.k", "--shells", "--cards")
     assert "left out: the card of the material m: no card" in said and "*MAT" not in Path("bar.k").read_text()
+
+
+def initial(text):
+    """Return the numbers of the initial stresses in a keyword file."""
+    rows = [line for line in text.split("*INITIAL")[1].split("\n*")[0].splitlines() if "e" in line[:12]]
+    return [[float(line[i:i + 10]) for i in range(0, len(line), 10)] for line in rows]
+
+
+def test_plastic_strain_of_a_scaled_criterion(program):
+    """Check that plastic strains are those of the card, of tension along rolling, whose work is the same."""
+    for name, criterion in (("plain", "hill48 F=0.5 G=0.5 H=0.5 N=1.5"), ("scaled", "hill48 F=2 G=2 H=2 N=6")):
+        # The scaled criterion has twice the equivalent stress and half the plastic strain at the same tension.
+        law = "linear Y0=200 H=1000" if name == "plain" else "linear Y0=400 H=4000"
+        Path(f"{name}.dat").write_text(DECK.replace("linear Y0=200 H=1000", law).replace("von_mises", criterion))
+        subprocess.run([program, "--quiet", f"{name}.dat"], check=True, capture_output=True)
+        for form in ("shells", "solids"):
+            call("export", f"{name}.out", f"{name}_{form}.k", "--cards", *["--shells"] * (form == "shells"))
+    for form in ("shells", "solids"):
+        one, other = (Path(f"{name}_{form}.k").read_text() for name in ("plain", "scaled"))
+        assert "sigy" in one and np.allclose(initial(one), initial(other), rtol=2e-3, atol=1e-6)
+        assert fields_in(one.splitlines())["etan"] == fields_in(other.splitlines())["etan"]
 
 
 def test_run_with_a_file(program):

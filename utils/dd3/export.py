@@ -85,15 +85,17 @@ def to_dyna(fields: Fields, step: int, target: Path, form: Form) -> None:
             rows = layer_rows(state)
         angles = None
         if form.cards:
-            lines, angles = shell_cards(fields.path.parent, job, form.cards, part,
+            lines, angles, scale = shell_cards(fields.path.parent, job, form.cards, part,
                                         (rows.shape[1], float(thickness[thickness > 0].mean())),
                                         rolling_of(fields.path, state, points, cells) if state else None)
+            rows = np.concatenate((rows[..., :-1], scale[:, None, None] * rows[..., -1:]), axis=-1)
         lines += shell_lines(fields.path, points, cells, part, thickness, rows, angles)
         lines += shell_bounds(fields.path, points, cells)
     else:
         if form.cards:
             from dd3.dyna.run_cards import run_cards
-            lines, _ = run_cards(job, np.unique(part).tolist(), form.cards, None, fields.path.parent)
+            cards = run_cards(job, np.unique(part).tolist(), form.cards, None, fields.path.parent)
+            lines, plastic = cards.lines, cards.scale(part) * plastic.ravel()
         lines += [*node_lines(points), "*ELEMENT_SOLID",
                  *("".join(f"{value:8d}" for value in (i, number, *(cell + 1)))
                    for i, (number, cell) in enumerate(zip(part, cells), 1)),
@@ -125,20 +127,20 @@ def rolling_of(path: Path, state: SheetState, points: np.ndarray, cells: np.ndar
 
 
 def shell_cards(folder: Path, job: dict[str, Any], options: "CardOptions", part: np.ndarray, layers: tuple[int, float],
-                angles: np.ndarray | None) -> tuple[list[str], np.ndarray | None]:
-    """Return the cards of the materials of shells of a run, and the angles of their axes, where a card needs them.
+                angles: np.ndarray | None) -> tuple[list[str], np.ndarray | None, np.ndarray]:
+    """Return the cards of the materials of shells of a run, the angles of their axes, where a card needs them, and
+    factors on their plastic strains.
 
     angles: those of the rolling direction, None where they are not known.
     """
     from dd3.dyna.run_cards import run_cards
-    lines, anisotropic = run_cards(job, np.unique(part).tolist(), replace(options, by_element=angles is not None),
-                                   layers, folder)
-    if anisotropic and angles is None:
+    cards = run_cards(job, np.unique(part).tolist(), replace(options, by_element=angles is not None), layers, folder)
+    if cards.anisotropic and angles is None:
         LOG.warning("the rolling direction in the cards is that of the initial sheet; at the end of a run of elements "
                     "solid_shell it is that of each shell, BETA")
-    if angles is not None and anisotropic:
+    if angles is not None and cards.anisotropic:
         LOG.info("note: the rolling direction of each shell is its BETA, from the first edge on (AOPT = 0)")
-    return lines, angles if anisotropic else None
+    return cards.lines, angles if cards.anisotropic else None, cards.scale(part)
 
 
 def has_back_stress(material: dict[str, Any]) -> bool:

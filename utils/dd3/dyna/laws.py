@@ -66,6 +66,7 @@ FAILURE = "failure is not available"
 HEAT = "temperatures and heat treatment are not available"
 METAL = 5e-10, 2.5e-8  # densities, t/mm3
 LARGEST_R = 10.0
+ROUNDED = 2e-4  # of the yield stress along rolling by coefficients of Yld2000 with four digits
 
 
 def number_of(card: Card) -> int:
@@ -359,11 +360,11 @@ def two_surfaces_yld2000(deck: Deck, card: Card, units: Units, law: Law) -> int:
 
 
 def eight(row: Row, exponent: float, factor: bool = False) -> str:
-    """Return Yld2000-2d by its coefficients; factor: scaled to the rolling direction."""
+    """Return Yld2000-2d by its coefficients; factor: scaled to the rolling direction, unless they are rounded ones."""
     alpha = np.array([row.number(f"ALPHA{k}") for k in range(1, 9)])
     if not alpha.any():
         raise Problem(f"{row.place}: error: all coefficients of Yld2000 are 0")
-    if factor and abs((along := float(yld2000_of(alpha, exponent)(np.array([1.0, 0.0, 0.0])))) - 1) > 1e-9:
+    if factor and abs((along := float(yld2000_of(alpha, exponent)(np.array([1.0, 0.0, 0.0])))) - 1) > ROUNDED:
         alpha = alpha / along
     return "yld2000 " + " ".join(f"alpha{k}={value:.9g}" for k, value in enumerate(alpha, 1)) + f" m={exponent:g}"
 

@@ -23,7 +23,7 @@ from dd3.tools.set_material import found
 @dataclass
 class MaterialCards:
     """Cards of a material: lines, number and keyword of the card, notes on how it was written, and what was left out.
-    `anisotropic`: whether it needs axes."""
+    `anisotropic`: whether it needs axes; `scale`: plastic strain in LS-DYNA over that here."""
 
     lines: list[str]
     number: int
@@ -31,6 +31,7 @@ class MaterialCards:
     notes: list[str]
     left_out: list[str]
     anisotropic: bool
+    scale: float
 
 
 def cards_of(material: Material, options: CardOptions | None = None) -> MaterialCards:
@@ -57,7 +58,7 @@ def cards_of(material: Material, options: CardOptions | None = None) -> Material
     said = [line for entry in (f"*MATERIAL {material.name}", *(" = ".join(pair) for pair in laws.block.values))
             for line in textwrap.wrap(entry, fields.TITLE, initial_indent="$ ", subsequent_indent="$   ")]
     return MaterialCards([*said, f"{keyword}_TITLE", material.name[:fields.TITLE], *rows, *laws.tail, *more], number,
-                         keyword, laws.notes, laws.losses, number not in (*SOLIDS, 37, 125))
+                         keyword, laws.notes, laws.losses, number not in (*SOLIDS, 37, 125), laws.scale)
 
 
 def limits(laws: Laws) -> list[str]:

@@ -3,7 +3,7 @@
 
 import re
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,30 +19,42 @@ from dd3.laws import Material
 SHEAR = 0.833  # factor of the shear of shells
 
 
+@dataclass
+class RunCards:
+    """Cards of a run: lines; whether a material needs axes; by part the plastic strain in LS-DYNA over that here."""
+
+    lines: list[str]
+    anisotropic: bool = False
+    scales: dict[int, float] = field(default_factory=dict)
+
+    def scale(self, part: np.ndarray) -> np.ndarray:
+        """Return the factors on the plastic strains of elements by their parts."""
+        return np.array([self.scales.get(int(number), 1.0) for number in part])
+
+
 def run_cards(job: dict[str, Any], numbers: Sequence[int], options: CardOptions, layers: tuple[int, float] | None,
-              folder: Path) -> tuple[list[str], list[int]]:
-    """Return parts, section and materials of a run, and the parts whose materials need axes; a material that no card
-    has is left out with a warning.
+              folder: Path) -> RunCards:
+    """Return parts, section and materials of a run; a material that no card has is left out with a warning.
 
     numbers: those of the materials. layers: of shells, points through the thickness, and the mean thickness. folder:
     of the results, beside which the input file is.
     """
-    lines, anisotropic = section(layers), []
+    found = RunCards(section(layers))
     for number in map(int, numbers):
         name = job["materials"][number - 1]["name"]
-        lines += ["*PART", name[:TITLE], *row("PID SECID MID", {"PID": number, "SECID": 1, "MID": number})]
+        found.lines += ["*PART", name[:TITLE], *row("PID SECID MID", {"PID": number, "SECID": 1, "MID": number})]
         try:
             cards = material_of(job, name, replace(options, mid=number), folder)
         except Problem as problem:
             LOG.warning(f"left out: the card of the material {problem}")
             continue
         report(cards, name, number)
-        lines += cards.lines
-        if cards.anisotropic:
-            anisotropic.append(number)
+        found.lines += cards.lines
+        found.anisotropic |= cards.anisotropic
+        found.scales[number] = cards.scale
         if layers is None and cards.number not in SOLIDS:
             LOG.warning(f"{name}: {cards.keyword} is a card for shells; --shells writes the mid-surface")
-    return lines, anisotropic
+    return found
 
 
 def material_of(job: dict[str, Any], name: str, options: CardOptions, folder: Path) -> MaterialCards:
