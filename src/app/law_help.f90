@@ -97,7 +97,7 @@ contains
     integer :: i, p
 
     law = friction_laws()
-    text = newline//"# Friction laws"//newline//heading(friction_key)// &
+    text = newline//"## Friction laws"//newline//heading(friction_key)// &
         "| law | meaning | parameters |"//newline//"|---|---|---|"//newline
     do i = 1, size(law)
       text = text//"| `"//trim(law(i)%name)//"` | "//escaped(trim(law(i)%title))//" | "
@@ -116,7 +116,7 @@ contains
     type(description_t), allocatable :: law(:)
     integer :: k
 
-    text = newline//"# Laws"//newline//newline//"`dd3imp --help law` and the pages of the "// &
+    text = newline//"## Laws"//newline//newline//"`dd3imp --help law` and the pages of the "// &
         "[criteria](yield_criteria.md) and the [other laws](hardening_laws.md)"//newline// &
         "have the parameters with meaning, unit, bounds and default."//newline
     do k = 1, size(kinds)
@@ -130,7 +130,7 @@ contains
     character(len=*), intent(in) :: key
     character(len=:), allocatable :: heading
 
-    heading = newline//"## `"//trim(key)//" = law key=value ...`"//newline//newline
+    heading = newline//"### `"//trim(key)//" = law key=value ...`"//newline//newline
   end function heading
 
   !> Return the laws of a key in Markdown.

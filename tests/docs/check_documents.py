@@ -34,7 +34,7 @@ FENCE = re.compile(r"^```\w*\n(.*?)^```", re.DOTALL | re.MULTILINE)
 GATHERED = {"yield": "yield_criteria.md", "hardening": "hardening_laws.md", "backstress": "hardening_laws.md",
             "modulus": "hardening_laws.md", "rate": "hardening_laws.md",
             "temperature": "hardening_laws.md", "fracture": "forming_limits.md"}
-LAW = re.compile(r"^## `(\w+) = law|^\| `(\w+)` \|", re.MULTILINE)
+LAW = re.compile(r"^### `(\w+) = law|^\| `(\w+)` \|", re.MULTILINE)
 PARAMETER = re.compile(r"^  (\S+) = (a \w.*?) \((\w.*)\)$", re.MULTILINE)
 BOUND = re.compile(r"[<>]=? ")
 GROUPS = [name for name, row in COMMANDS.items() if isinstance(row[-1], dict)]

@@ -13,6 +13,8 @@ import shutil
 import subprocess
 import sys
 
+from accessible import Page
+
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
 TOP = ["CONTRIBUTING.md", "CHANGELOG.md", "CODE_OF_CONDUCT.md", "SECURITY.md"]
@@ -80,6 +82,14 @@ def check_hosts(site):
             sys.exit(f"{page}: {found[0]}")
 
 
+def check_access(site):
+    """End where a page of the documents lacks what a screen reader needs."""
+    found = [f"{page}: no {fault}" for page in sorted(site.rglob("*.html")) if "sources" not in page.parts
+             for fault in Page(page.read_text(encoding="utf-8")).faults()]
+    if found:
+        sys.exit("\n".join(found))
+
+
 def run(words, folder):
     """Run a command; its warnings are errors."""
     done = subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False)
@@ -104,6 +114,7 @@ def main():
     shutil.copy(HERE / "mathematics.py", work)
     run([tools / "mkdocs", "build", "--strict"], work)
     check_hosts(work / "html")
+    check_access(work / "html")
     print(work / "html" / "index.html")
 
 
