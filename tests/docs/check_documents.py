@@ -148,7 +148,7 @@ def wrong_codes(program):
 def laws_of(reference):
     """Return the laws of the keyword reference: kind and name."""
     kind, laws = "", []
-    for heading, name in LAW.findall(reference.partition("\n# Laws")[2]):
+    for heading, name in LAW.findall(reference.partition("\n## Laws")[2]):
         kind = heading or kind
         if name:
             laws.append((kind, name))
