@@ -28,7 +28,7 @@ def write(name, *columns, heading=""):
 
 def identified(program, *words, command="identify"):
     """Return what is written for a material, and what is said."""
-    said = call(command, "steel", *words, *([] if "--starts" in words else ["--starts", 2]), "--program", program)
+    said = call(command, "steel", *words, *([] if "--starts" in words else ["--starts", 1]), "--program", program)
     return re.sub(r" &\n +", " ", Path("steel.dat").read_text()), said
 
 

@@ -225,17 +225,16 @@ def read_curves(texts: Sequence[str], of: str, read: Callable[[str], Any]) -> li
     return every([partial(one, text) for text in texts])
 
 
-def draw(axes: Axes, of: str, law: str, tests: Ratios | None, points: Points) -> None:
-    """Draw the factors of a law, and ratios measured beside them, if there are any."""
-    if tests is None:
-        places = np.geomspace(1e-4, 1e3, 60) if of == RATE else np.linspace(0, 500, 60)
-    else:
-        ends = tests.place.min(), tests.place.max()
-        places = np.geomspace(*ends, 60) if of == RATE else np.linspace(*ends, 60)
+def draw(axes: Axes, of: str, law: str, tests: Ratios, reference: float | None, points: Points) -> None:
+    """Draw measured ratios, and the factors of a law over that at the reference rate or temperature, None for ratios
+    over the flow stress of the hardening law."""
+    places = (np.geomspace if of == RATE else np.linspace)(tests.place.min(), tests.place.max(), 60)
     values = factors_at(points, of, [law], places)[0]
+    if reference is not None:
+        values = values / factors_at(points, of, [law], np.array([reference]))[0]
     axes.plot(places, values, label="identified")
-    if tests is not None:
-        axes.plot(*tests, "s", color="k", markerfacecolor="none", label="measured, over the reference test")
-    axes.set(xlabel="strain rate (1/s)" if of == RATE else "temperature", ylabel="factor on the flow stress")
+    axes.plot(*tests, "s", color="k", markerfacecolor="none", label="measured")
+    axes.set(xlabel="strain rate (1/s)" if of == RATE else "temperature",
+             ylabel="flow stress over that of the " + ("hardening law" if reference is None else "reference test"))
     if of == RATE:
         axes.set_xscale("log")

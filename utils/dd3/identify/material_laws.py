@@ -5,6 +5,7 @@ the rate, the temperature, the hardening and the fracture, each with what was fo
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from itertools import zip_longest
 from typing import Any
 
 import numpy as np
@@ -118,8 +119,8 @@ def read_tests(task: Task, young: float) -> list[Test]:
     fast, warm = every(parts)
     low = min((rate for rate, _ in fast), default=None)
     cold = min((degrees for degrees, _ in warm), default=None)
-    tests = [Test(curve, rate, cold, f"{rate:g}/s") for rate, curve in fast]
-    tests += [Test(curve, low, degrees, f"{degrees:g} C") for degrees, curve in warm]
+    tests = [Test(curve, rate, cold, f"rate {rate:g}/s") for rate, curve in fast]
+    tests += [Test(curve, low, degrees, f"temperature {degrees:g}") for degrees, curve in warm]
     return sorted(tests, key=lambda test: (test.rate or 0, test.temperature or 0))
 
 
@@ -264,10 +265,11 @@ def picture(task: Task, found: Measured, laws: Laws, points: Points) -> Figure |
     if laws.elastic and found.moduli:
         panels.append(lambda axes: modulus.draw(axes, laws.elastic, found.moduli, points))
     for of in (RATE, TEMPERATURE):
-        text, curves = laws.text_of(of), getattr(task, f"{of}_curves")
-        if text and getattr(task, of):
-            measured = found.ratios.get(of) or (ratios_of(found.tests, of, points.young) if curves else None)
-            panels.append(partial(factors.draw, of=of, law=text, tests=measured, points=points))
+        text = laws.text_of(of)
+        if text:
+            ratios = found.ratios.get(of) or ratios_of(found.tests, of, points.young)
+            panels.append(partial(factors.draw, of=of, law=text, tests=ratios, points=points,
+                                  reference=reference_of(task, of, ratios)))
     if task.has_curves():
         panels.append(lambda axes: draw_curves(axes, found, laws))
     text = laws.text_of("fracture")
@@ -275,8 +277,12 @@ def picture(task: Task, found: Measured, laws: Laws, points: Points) -> Figure |
         panels.append(lambda axes: fracture.draw(axes, text, found.strains, points))
     if not panels:
         return None
-    figure, all_axes = new_figure((6 * len(panels), 4.5), 1, len(panels), squeeze=False)
-    for draw, axes in zip(panels, all_axes[0]):
+    columns = min(len(panels), 2)
+    figure, grid = new_figure((6 * columns, 4.5 * -(-len(panels) // 2)), -(-len(panels) // 2), columns, squeeze=False)
+    for draw, axes in zip_longest(panels, grid.flat):
+        if draw is None:
+            axes.remove()
+            continue
         draw(axes)
         axes.grid(True, color="0.9")
         axes.legend(frameon=False, fontsize="small")
