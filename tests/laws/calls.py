@@ -1,12 +1,36 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The shared library of the laws in Python: materials by the interface of C, and UMAT."""
 
+import argparse
+import contextlib
 import ctypes
 import os
+import sys
+import tempfile
+from pathlib import Path
 
 import numpy as np
 
+from dd3.programs import find_program
+
 DOUBLES = ctypes.POINTER(ctypes.c_double)
+
+
+@contextlib.contextmanager
+def called(description):
+    """Read the command line of a test; yield program, library and folder of the runs. Without the library, as in some
+    builds, the test is skipped."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", required=True, type=find_program)
+    parser.add_argument("--library", required=True, type=Path)
+    parser.add_argument("--work", type=Path, help="folder of the runs, kept")
+    options = parser.parse_args()
+    if not options.library.is_file():
+        sys.exit(77)
+    with tempfile.TemporaryDirectory() as name:
+        folder = options.work or Path(name)
+        folder.mkdir(parents=True, exist_ok=True)
+        yield options.program, ctypes.CDLL(str(options.library.resolve())), folder
 
 
 def pointer(array):

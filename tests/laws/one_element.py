@@ -7,18 +7,14 @@
     tests/laws/one_element.py --program build/release/dd3imp --library build/release/libdd3laws.so --work /tmp/laws
 """
 
-import argparse
-import ctypes
 import sys
-import tempfile
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import numpy as np
-from calls import Material, Umat
+from calls import Material, Umat, called
 from cases import CASES, SIZE, TWO_SURFACES, Case, deck, displacements
 
-from dd3.programs import find_program, launch
+from dd3.programs import launch
 from dd3.tables import read_table
 
 # Largest difference of a force, relative to the largest of its direction.
@@ -172,27 +168,17 @@ def check_threads(library):
 
 def main():
     """Run and compare all cases."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", required=True, type=find_program)
-    parser.add_argument("--library", required=True, type=Path)
-    parser.add_argument("--work", type=Path, help="folder of the runs, kept")
-    options = parser.parse_args()
-    if not options.library.is_file():
-        sys.exit(77)  # a build without the library
-    library = ctypes.CDLL(str(options.library.resolve()))
     failed = False
-    with tempfile.TemporaryDirectory() as name:
-        folder = options.work or Path(name)
-        folder.mkdir(parents=True, exist_ok=True)
-        check_umat(library, Path(name))
+    with called(__doc__) as (program, library, folder):
+        check_umat(library, folder)
         check_threads(library)
         for case in (*CASES, TWO_SURFACES):
-            expected = run_program(options.program, case, folder)
+            expected = run_program(program, case, folder)
             found = {"library": by_library(case, Material(library, case.material()))}
             # A material keeps its name, hence one more name for each case.
             umat_name = case.name.replace(" ", "_").upper()
             text = case.material().replace("*MATERIAL sheet", f"*MATERIAL {umat_name.lower()}")
-            found["umat"] = by_library(case, Umat(library, text, Path(name), umat_name))
+            found["umat"] = by_library(case, Umat(library, text, folder, umat_name))
             for what, forces in found.items():
                 value = difference(case, forces, expected)
                 failed |= not value < TOLERANCE

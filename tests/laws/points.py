@@ -9,17 +9,13 @@
 Plane stress with strains in three parts: near to uniaxial tension, then with stretching across and shear, and back.
 """
 
-import argparse
-import ctypes
 import sys
-import tempfile
-from pathlib import Path
 
 import numpy as np
-from calls import Material, Umat
+from calls import Material, Umat, called
 from one_element import free_strain
 
-from dd3.programs import find_program, launch
+from dd3.programs import launch
 from dd3.tables import read_table
 
 # Largest difference of a column relative to the largest value of its tensor, or to its own. The program writes ten
@@ -143,19 +139,9 @@ def largest(found, expected, labels):
 
 def main():
     """Run and compare all materials."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", required=True, type=find_program)
-    parser.add_argument("--library", required=True, type=Path)
-    parser.add_argument("--work", type=Path, help="folder of the run, kept")
-    options = parser.parse_args()
-    if not options.library.is_file():
-        sys.exit(77)  # a build without the library
-    library = ctypes.CDLL(str(options.library.resolve()))
     failed = False
-    with tempfile.TemporaryDirectory() as name:
-        folder = options.work or Path(name)
-        folder.mkdir(parents=True, exist_ok=True)
-        points, text = run_program(options.program, folder), "".join(map(material, MATERIALS))
+    with called(__doc__) as (program, library, folder):
+        points, text = run_program(program, folder), "".join(map(material, MATERIALS))
         for name in MATERIALS:
             by_c = Material(library, material(name))
             expected, labels = expected_of(points[name], by_c.names())

@@ -36,6 +36,7 @@ from dd3.programs import parser_of_runs
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests"))
 from bench import Bench, Value, check_values  # noqa: E402
+from many_laws import MANY_LAWS  # noqa: E402
 
 DRAW = ROOT / "input_files" / "draw_bending" / "draw_bending.dat"
 UNLOAD = "*PHASE springback\n  unload = on\n"
@@ -46,20 +47,11 @@ MATERIAL = """*MATERIAL mild_steel
   yield = hill48 r0=1.79 r45=1.51 r90=2.27
   hardening = swift K=565.32 e0=0.007117 n=0.2589
 """
-# A material with an internal variable of each kind.
-LAWS = """*MATERIAL many_laws
+LAWS = f"""*MATERIAL many_laws
   young = 2.06e5
   poisson = 0.30
-  density = 7.85e-9
   yield = hill48 r0=1.79 r45=1.51 r90=2.27
-  hardening = yoshida_uemori Y=124 B=168 C=200 m=12 b_sat=60 Rsat=190 h=0.5
-  modulus = chord Ea=1.63e5 xi=30.8
-  rate = power m=0.015 reference=1e-4
-  temperature = johnson_cook Tr=20 Tm=500 m=0.8
-  heat_capacity = 4.6e8
-  fracture = table exponent=2 -0.6:2 0:0.7 0.6:0.4
-  forming_limit = -0.2 0.26 0 0.16
-"""
+{MANY_LAWS}"""
 VARIABLES = ("equivalent_plastic_strain", "relative_back_stress", "bounding_back_stress", "stagnation_centre",
              "stagnation_radius", "bounding_hardening", "plastic_strain_rate", "temperature", "fracture_damage",
              "forming_limit_ratio")

@@ -11,6 +11,8 @@ A run is killed at random instants, within a change of phase, and while its rest
 """
 import random
 import signal
+import sys
+from pathlib import Path
 
 from runs import (
     Deck,
@@ -29,6 +31,9 @@ from runs import (
 )
 
 from dd3.programs import parser_of_runs
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from many_laws import MANY_LAWS  # noqa: E402
 
 # Phases before the last one, and the beginning of that.
 MOTIONS = """*PHASE turn
@@ -66,16 +71,8 @@ CUSHION = (("  penalty = ${p}", "  layer = ${p}"), ('punch.bez"', 'punch.bez"\n 
             "  pin = blank_holder 100 0 0 1\n  pin = blank_holder 100 35 0 1\n  duration = 1"),
            *((text, f"{text}\n  duration = 1") for text in ("force punch 400", "displacement punch 1.8", "x_max y 0.05",
                                                              "free = x_max y", "unload = on")))
-# A material with an internal variable of each kind: two surfaces, rate, temperature, damage, forming limit.
-MANY_LAWS = """  density = 7.85e-9
-  hardening = yoshida_uemori Y=124 B=168 C=200 m=12 b_sat=60 Rsat=190 h=0.5
-  modulus = chord Ea=1.63e5 xi=30.8
-  rate = power m=0.015 reference=1e-4
-  temperature = johnson_cook Tr=20 Tm=500 m=0.8
-  heat_capacity = 4.6e8
-  fracture = table exponent=2 -0.6:2 0:0.7 0.6:0.4
-  forming_limit = -0.2 0.26 0 0.16"""
-LAWS = (("  hardening = swift K=565 e0=0.007117 n=0.259\n  backstress = lemaitre_chaboche CX=5 Xsat=40", MANY_LAWS),
+LAWS = (("  hardening = swift K=565 e0=0.007117 n=0.259\n  backstress = lemaitre_chaboche CX=5 Xsat=40",
+         MANY_LAWS.rstrip()),
         ("-22600", "-22600\n  duration = 1"), *((text, f"{text}\n  duration = 1") for text in (
             "force punch 400", "displacement punch 1.8", "x_max y 0.05", "free = x_max y", "unload = on")))
 # Changes of the deck and settings, by name: restart file often, after each increment, at the ends of phases only;

@@ -259,6 +259,14 @@ def friction_words(text):
     return float(re.search(r"friction = (\S+)", text)[1]), laws
 
 
+def test_friction_that_rises(program):
+    """A coefficient that rises with the speed is told to be outside of Stribeck's curve, whose factor ends at 1."""
+    speed = np.array([1, 5, 15, 40, 80])
+    write("mu.csv", speed, 0.1 * (1 + 0.005 * speed), heading="speed[mm/s] mu")
+    text, _ = identified(program, "--friction", "stribeck", "--friction-data", "mu.csv", "--fix", "stribeck.n=1")
+    assert 0.99 < friction_words(text)[1]["stribeck"]["r"] <= 1 and "stribeck.r is at the end of its range" in text
+
+
 def test_friction(program):
     """Check laws of friction: a power of the pressure with a decrease by the speed, which a run of the program has
     too, found from exact coefficients and from such with scatter, and tables."""

@@ -57,7 +57,7 @@ def curve(number: int, title: str, points: np.ndarray, intervals: int = 0) -> li
             *(field(float(x), LONG) + field(float(y), LONG) for x, y in points)]
 
 
-def table(number: int, title: str, rows: Sequence[tuple[float, int]], intervals: int = 0) -> list[str]:
+def table(number: int, title: str, rows: Sequence[tuple[float, int]]) -> list[str]:
     """Return a table of values and numbers of curves."""
     return ["*DEFINE_TABLE_2D_TITLE", title[:TITLE], *row("TBID SFA OFFA", {"TBID": number, "SFA": 1.0}),
             f"$#{'value':>{LONG - 2}}{'curveid':>{LONG}}",

@@ -13,6 +13,7 @@ import numpy as np
 from dd3.dyna.damage import EROSION, GISSMO, LIMITS, MOST_ANGLES
 from dd3.dyna.fields import curve, row, table
 from dd3.dyna.law_words import Words
+from dd3.identify.fracture import stress_of
 
 INTERVALS = 1000  # LCINT
 FLAT = 1.0  # triaxiality by which the ends go on, as curves of LS-DYNA go on by their last slope
@@ -26,7 +27,7 @@ Blocks = list[tuple[float, np.ndarray]]  # normalised Lode angle, points of tria
 def hosford_coulomb(law: Words, triaxiality: np.ndarray, lode: float) -> np.ndarray:
     """Return the strains to fracture of Mohr and Marcadet (2015)."""
     a, b, c, n = law["a"], law["b"], law["c"], law.values.get("n", 0.1)
-    f1, f2, f3 = 2 / 3 * np.cos(np.pi / 6 * np.array([1 - lode, 3 + lode, 5 - lode]))
+    f1, f2, f3 = stress_of(0.0, lode)
     g = (((f1 - f2)**a + (f2 - f3)**a + (f1 - f3)**a) / 2)**(1 / a)
     inner = np.maximum(g + c * (2 * triaxiality + f1 + f3), BRACKET * (1 + c))
     return np.asarray(np.minimum(b * ((1 + c) / inner)**(1 / n), LARGEST))

@@ -117,7 +117,7 @@ def starts_of(law: str, tests: Tests, fixed: Mapping[str, Mapping[str, float]]) 
     speed = max(float(places.mean()), 1e-6)
     rest = min(float(tests.coefficient.min() / tests.coefficient.max()), 0.95)
     first = {"n": (0.9, 0.05, 2.0) if law == "power" else (1.2, 1.0, 8.0), "v0": (speed / 2, speed / 1e3, speed * 1e3),
-             "r": (rest, 0.01, 20.0)}
+             "r": (rest, 0.01, 1.0)}
     return [Sought(law, name, *(float(np.log(one)) for one in first[name])) for name in names_sought(law, fixed)]
 
 
