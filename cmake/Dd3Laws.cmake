@@ -4,7 +4,7 @@
 foreach(folder IN ITEMS base linalg input material laws library)
   set_target_properties(dd3_${folder} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   # Calls within a file stay calls of that file's own procedures, as in a program.
-  target_compile_options(dd3_${folder} PRIVATE -fno-semantic-interposition)
+  target_compile_options(dd3_${folder} PRIVATE ${DD3_OWN_CALLS})
 endforeach()
 
 find_package(Threads REQUIRED)

@@ -4,7 +4,8 @@
 # Declare src/<folder>/ as the library dd3_<folder>. Its module files are written to a separate directory, visible only
 # to the libraries that name it in USES: a `use` of an undeclared folder does not compile. The sources are every .f90
 # below the folder except a main program (see dd3_program), and the GENERATED files. The global property DD3_FOLDERS
-# lists the folders that have sources.
+# lists the folders that have sources. Compilers other than gfortran read, with a module, the files of the modules that
+# it uses: there the directories are inherited, and the build does not refuse a use that is not declared.
 function(dd3_library folder)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "USES;PACKAGES;GENERATED")
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_SOURCE_DIR}/src/${folder}/*.f90")
@@ -22,6 +23,9 @@ function(dd3_library folder)
   target_compile_options(${library} PRIVATE "$<$<COMPILE_LANGUAGE:Fortran>:${DD3_WARNINGS}>")
   foreach(used IN LISTS arg_USES)
     target_link_libraries(${library} PRIVATE dd3_${used})
+    if(NOT CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
+      target_include_directories(${library} INTERFACE "$<TARGET_PROPERTY:dd3_${used},INTERFACE_INCLUDE_DIRECTORIES>")
+    endif()
   endforeach()
   target_link_libraries(${library} PRIVATE ${arg_PACKAGES})
   set_property(GLOBAL APPEND PROPERTY DD3_FOLDERS ${folder})
