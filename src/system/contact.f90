@@ -33,10 +33,12 @@ contains
       deallocate (formulation)
     end if
     if (mixed) then
-      allocate (formulation, source=mixed_contact_t(balances_tools=.true.))
+      allocate (mixed_contact_t :: formulation)
     else
-      allocate (formulation, source=compliant_contact_t(eliminates=.true.))
+      allocate (compliant_contact_t :: formulation)
     end if
+    formulation%balances_tools = mixed
+    formulation%eliminates = .not. mixed
   end subroutine choose
 
   !> Evaluate the contact of the system's points in a trial state: search, status, force and
