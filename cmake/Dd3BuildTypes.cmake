@@ -24,9 +24,9 @@ elseif(CMAKE_Fortran_COMPILER_ID STREQUAL "LLVMFlang")
     set(CMAKE_Fortran_COMPILE_OPTIONS_PIC -fPIC)
   endif()
 elseif(CMAKE_Fortran_COMPILER_ID STREQUAL "IntelLLVM")
-  # As the manual of ifx says; not run. -fp-model=precise: the default model changes the order of operations and
-  # assumes that there is no NaN. -standard-semantics: among others the logicals of C; the names of module procedures
-  # stay those with which libraries are compiled. -fpe0: traps for invalid, zero, overflow.
+  # Not run; from the manual of ifx as far as it could be looked up. -fp-model=precise: the default model changes the
+  # order of operations and assumes that there is no NaN. -standard-semantics: among others the logicals of C; the names
+  # of module procedures stay those with which libraries are compiled. -fpe0: traps for invalid, zero, overflow.
   # noarg_temp_created: a copied argument is no mistake; nouninit: libraries would have to be compiled with it too.
   set(ifx "-fp-model=precise -standard-semantics -assume nostd_mod_proc_name")
   set(CMAKE_Fortran_FLAGS_RELEASE_INIT "-O3 -no-fma ${ifx}")

@@ -21,7 +21,7 @@ if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
 elseif(CMAKE_Fortran_COMPILER_ID STREQUAL "LLVMFlang")
   set(DD3_WARNINGS -std=f2018 -pedantic)  # of the standards it takes this one alone
 elseif(CMAKE_Fortran_COMPILER_ID STREQUAL "IntelLLVM")
-  # As the manual of ifx says; not run.
+  # Not run; from the manual of ifx as far as it could be looked up.
   set(DD3_WARNINGS "SHELL:-stand f08" "SHELL:-warn all")
   set(DD3_UNUSED_ALLOWED "SHELL:-warn nounused")
   set(werror "SHELL:-warn errors")
