@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+#: []
 """The shared library of the laws in Python: materials by the interface of C, and UMAT."""
 
 import argparse
