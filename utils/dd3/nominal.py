@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Surfaces with which a sheet is compared: a face of a sheet, a tool surface, CAD, facets; distances from them."""
 
+from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,7 @@ from dd3.tools.settings import ToolSettings
 from dd3.tools.surface import read_patches
 
 PARALLEL = 1e-9  # sine of the angle between a line and a triangle below which they do not meet
+CELLS = 10_000  # at most, whose normals are compared with those of another surface
 INSIDE = 1e-9  # by which a line may pass beside a triangle, in its own coordinates
 
 
@@ -121,17 +123,33 @@ def normal_feet(points: np.ndarray, surface: Any) -> tuple[np.ndarray, np.ndarra
     return points - distance[:, None] * normals, beside
 
 
+def cells_along(surface: Any, points: np.ndarray, directions: np.ndarray) -> Iterator[np.ndarray]:
+    """Yield for each line the cells of a surface whose boxes it meets."""
+    from vtkmodules.vtkCommonCore import vtkIdList
+    from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
+    locator, found = vtkStaticCellLocator(), vtkIdList()
+    locator.SetDataSet(surface)
+    locator.BuildLocator()
+    middle = np.array(surface.center)
+    for point, direction in zip(points, directions):
+        start = point + ((middle - point) @ direction - surface.length) * direction
+        locator.FindCellsAlongLine(start, start + 2 * surface.length * direction, SAME * surface.length, found)
+        yield np.array([found.GetId(k) for k in range(found.GetNumberOfIds())], int)
+
+
 def line_distances(points: np.ndarray, directions: np.ndarray, surface: Any) -> tuple[np.ndarray, np.ndarray]:
     """Return the distances along lines from points to the nearest place where each meets a surface, and its normals
     there; nan where it does not. directions: unit vectors.
 
     Source: Moeller and Trumbore, J. Graph. Tools 2 (1997) 21-28.
     """
-    corner = np.asarray(surface.points, float)[surface.faces.reshape(-1, 4)[:, 1:]]
-    first, second = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
-    size = np.linalg.norm(first, axis=1) * np.linalg.norm(second, axis=1)
+    corners = np.asarray(surface.points, float)[surface.faces.reshape(-1, 4)[:, 1:]]
+    face_normals = np.asarray(surface.face_normals, float)
     found, normals = np.full(len(points), np.nan), np.full((len(points), 3), np.nan)
-    for i, (point, direction) in enumerate(zip(points, directions)):
+    for i, near in enumerate(cells_along(surface, points, directions)):
+        point, direction, corner = points[i], directions[i], corners[near]
+        first, second = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
+        size = np.linalg.norm(first, axis=1) * np.linalg.norm(second, axis=1)
         across = np.cross(direction, second)
         volume = (first * across).sum(axis=1)
         factor = np.divide(1.0, volume, where=np.abs(volume) > PARALLEL * size, out=np.full_like(volume, np.nan))
@@ -144,12 +162,13 @@ def line_distances(points: np.ndarray, directions: np.ndarray, surface: Any) -> 
             along = factor[hits] * (other[hits] * second[hits]).sum(axis=1)
             nearest = np.abs(along).argmin()
             found[i] = along[nearest]
-            normals[i] = surface.face_normals[hits[nearest]]
+            normals[i] = face_normals[near[hits[nearest]]]
     return found, normals
 
 
 def turned_to(surface: Any, other: Any) -> Any:
-    """Return a surface with its normals on the side of those of another one beside it."""
-    _, normals, _ = normal_distances(np.asarray(other.cell_centers().points, float), surface)
-    same = (normals * np.asarray(other.face_normals)).sum(axis=1)
+    """Return a surface with its normals on the side of those of another one beside it, by some of its cells."""
+    some = slice(None, None, 1 + other.n_cells // CELLS)
+    _, normals, _ = normal_distances(np.asarray(other.cell_centers().points, float)[some], surface)
+    same = (normals * np.asarray(other.face_normals)[some]).sum(axis=1)
     return surface.flip_faces() if (same < 0).sum() > (same > 0).sum() else surface

@@ -75,11 +75,13 @@ def latin_hypercube(distributions: Sequence[Any], count: int, ranks: np.ndarray 
                     ) -> np.ndarray:
     """Return a sample of inputs, (count, inputs): one value in each of `count` parts of equal probability of each.
 
-    ranks: matrix of rank correlations, independent by default.
+    ranks: matrix of rank correlations. Without it the inputs are independent: chance correlations of a small sample,
+    which change the deviation of results, are removed, unless there are more inputs than values of each.
     """
-    places = stats.qmc.LatinHypercube(len(distributions), seed=np.random.default_rng(seed)).random(count)
-    if ranks is not None:
-        places = correlate(places, ranks, seed)
+    size = len(distributions)
+    places = stats.qmc.LatinHypercube(size, seed=np.random.default_rng(seed)).random(count)
+    if ranks is not None or 1 < size < count:
+        places = correlate(places, np.eye(size) if ranks is None else ranks, seed)
     return np.column_stack([one.ppf(places[:, i]) for i, one in enumerate(distributions)])
 
 
