@@ -67,8 +67,8 @@ module dd3_material_composition
     integer :: at_damage = 0, at_forming_limit = 0, n_reported = 0
     !> Whether there is a back-stress of any kind.
     logical :: kinematic = .false.
-    !> Whether neither back-stress nor flow stress depends on xi: the matrix of the return mapping is
-    !> then symmetric.
+    !> Whether neither back-stress nor flow stress depends on xi: the matrix of the return mapping
+    !> is then symmetric.
     logical :: symmetric = .true.
     !> Whether Young's modulus falls with the plastic strain.
     logical :: softens = .false.
