@@ -8,8 +8,8 @@
 The files contain *MATERIAL blocks and no sheet; FILE:NAME draws one of them. Each material has one colour. All values
 are computed by the program at single points (*POINT): tension at angles to the rolling direction, and plane stress at
 fixed ratios of strain, which gives the yield surface (stresses over the flow stress) and its normals (the strains).
-Stresses include the back-stress. Laws of the strain rate are evaluated at --rate. --run draws s11 over e11 of the points of a finished run, given its folder of results
-or its history.csv.
+Stresses include the back-stress. Laws of the strain rate are evaluated at --rate. --run draws s11 over e11 of the
+points of a finished run, given its folder of results or its history.csv.
 """
 
 import re
