@@ -23,6 +23,7 @@ module dd3_material_composition
   implicit none
   private
   public :: composition_t, heat_t, complete, describe_internal_variables
+  public :: plastic_work_t, plastic_work
   public :: stiffness_ratio, back_stress_of, flow_stress_after, flow_response_of, apply_factors
   public :: add_back_stresses, evolve_internal_variables
 
@@ -32,6 +33,12 @@ module dd3_material_composition
     !> Rise of the temperature by plastic work per volume, K mm3/mJ; 0 for a constant temperature.
     real(wp) :: per_work = 0.0_wp
   end type heat_t
+
+  !> Plastic work of an increment per volume, mJ/mm3, and its derivatives in the plastic increment
+  !> and in xi, with the stress T = xi + X of its end: dp T:V.
+  type :: plastic_work_t
+    real(wp) :: value = 0.0_wp, slope = 0.0_wp, gradient(6) = 0.0_wp
+  end type plastic_work_t
 
   !> The laws of a material.
   type :: composition_t
@@ -60,13 +67,14 @@ module dd3_material_composition
     integer :: at_damage = 0, at_forming_limit = 0, n_reported = 0
     !> Whether there is a back-stress of any kind.
     logical :: kinematic = .false.
-    !> Whether neither back-stress nor flow stress depends on the direction of flow: the matrix of
-    !> the return mapping is then symmetric.
+    !> Whether neither back-stress nor flow stress depends on xi: the matrix of the return mapping
+    !> is then symmetric.
     logical :: symmetric = .true.
     !> Whether Young's modulus falls with the plastic strain.
     logical :: softens = .false.
-    !> Whether the flow stress depends on the strain rate; on it or on the temperature.
-    logical :: viscous = .false., scaled = .false.
+    !> Whether the flow stress depends on the strain rate; on it or on the temperature; on a
+    !> temperature that plastic work raises.
+    logical :: viscous = .false., scaled = .false., heated = .false.
   end type composition_t
 
 contains
@@ -88,10 +96,11 @@ contains
       self%n_internal = self%n_internal + 1
       self%at_temperature = self%n_internal
     end if
+    self%heated = self%at_temperature > 0 .and. allocated(self%temperature%law)
     call add_reported(self)
     self%kinematic = size(self%backstress) > 0 .or. self%hardening%owns_back_stress
     self%softens = allocated(self%modulus%law)
-    self%symmetric = .not. (self%kinematic .or. self%hardening%path_dependent)
+    self%symmetric = .not. (self%kinematic .or. self%hardening%path_dependent .or. self%heated)
   end subroutine complete
 
   !> Append the internal variables that only reports read.
@@ -214,11 +223,12 @@ contains
 
     ! Other laws ignore the direction, and filling it takes longer than their flow stress.
     if (self%hardening%path_dependent) direction = no_direction()
-    call flow_stress_after(self, internal_variables, 0.0_wp, frequency, direction, flow)
+    call flow_stress_after(self, internal_variables, 0.0_wp, frequency, direction, &
+        plastic_work_t(), flow)
   end subroutine flow_response_of
 
   !> Evaluate the flow stress at the end of a plastic increment with its derivatives.
-  pure subroutine flow_stress_after(self, start, increment, frequency, direction, flow)
+  pure subroutine flow_stress_after(self, start, increment, frequency, direction, work, flow)
     type(composition_t), intent(in) :: self
     !> Internal variables at the start.
     real(wp), intent(in) :: start(self%n_internal)
@@ -227,18 +237,42 @@ contains
     real(wp), intent(in) :: frequency
     !> The criterion at the effective stress of the end.
     type(flow_direction_t), intent(in) :: direction
+    !> Of the increment; zero to take the temperature of the start.
+    type(plastic_work_t), intent(in) :: work
     type(flow_response_t), intent(out) :: flow
 
     call self%hardening%flow_stress(start(1), start(self%first:self%last), increment, direction, &
         flow)
-    if (self%scaled) call apply_factors(self, start, increment, frequency, flow)
+    if (self%scaled) call apply_factors(self, start, increment, frequency, work, flow)
   end subroutine flow_stress_after
+
+  !> Return the plastic work of an increment.
+  pure type(plastic_work_t) function plastic_work(self, increment, direction, back) result(work)
+    type(composition_t), intent(in) :: self
+    real(wp), intent(in) :: increment
+    !> The criterion at the effective stress of the end.
+    type(flow_direction_t), intent(in) :: direction
+    !> Back-stress of the end; not used if there is none.
+    type(back_response_t), intent(in) :: back
+
+    work%slope = direction%equivalent
+    work%gradient = increment*direction%gradient
+    if (self%kinematic) then
+      work%slope = work%slope + dot_product(direction%gradient, back%value)
+      work%gradient = work%gradient + increment*(matmul(direction%gradient, back%gradient) &
+          + matmul(direction%second, back%value))
+    end if
+    work%value = increment*work%slope
+    if (self%kinematic) work%slope = work%slope &
+        + increment*dot_product(direction%gradient, back%slope)
+  end function plastic_work
 
   !> Multiply the flow stress of the hardening law by the factors of the strain rate and of the
   !> temperature; arguments as for `flow_stress_after`.
-  pure subroutine apply_factors(self, start, increment, frequency, flow)
+  pure subroutine apply_factors(self, start, increment, frequency, work, flow)
     type(composition_t), intent(in) :: self
     real(wp), intent(in) :: start(self%n_internal), increment, frequency
+    type(plastic_work_t), intent(in) :: work
     type(flow_response_t), intent(inout) :: flow
 
     real(wp) :: factor, slope, by_strain
@@ -250,25 +284,23 @@ contains
       flow%gradient = factor*flow%gradient
       flow%value = factor*flow%value
     end if
-    if (allocated(self%temperature%law)) call apply_temperature(self, start, increment, flow)
+    if (allocated(self%temperature%law)) call apply_temperature(self, start, work, flow)
   end subroutine apply_factors
 
-  !> Multiply a flow stress by the factor of the temperature at the end of a plastic increment: the
-  !> work that heats is that of the flow stress at the temperature of the start.
-  pure subroutine apply_temperature(self, start, increment, flow)
+  !> Multiply a flow stress by the factor of the temperature at the end of a plastic increment.
+  pure subroutine apply_temperature(self, start, work, flow)
     type(composition_t), intent(in) :: self
-    real(wp), intent(in) :: start(self%n_internal), increment
+    real(wp), intent(in) :: start(self%n_internal)
+    type(plastic_work_t), intent(in) :: work
     type(flow_response_t), intent(inout) :: flow
 
-    real(wp) :: before, factor, slope, temperature, heating, heating_slope
+    real(wp) :: factor, slope
 
-    temperature = temperature_of(self, start)
-    call self%temperature%law%factor(temperature, before, slope)
-    heating = self%heat%per_work*before*flow%value*increment
-    heating_slope = self%heat%per_work*before*(flow%value + increment*flow%slope)
-    call self%temperature%law%factor(temperature + heating, factor, slope)
-    flow%slope = factor*flow%slope + flow%value*slope*heating_slope
-    flow%gradient = (factor + slope*heating)*flow%gradient
+    call self%temperature%law%factor(temperature_of(self, start) + self%heat%per_work*work%value, &
+        factor, slope)
+    slope = self%heat%per_work*slope*flow%value
+    flow%slope = factor*flow%slope + slope*work%slope
+    flow%gradient = factor*flow%gradient + slope*work%gradient
     flow%value = factor*flow%value
   end subroutine apply_temperature
 

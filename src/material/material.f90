@@ -8,7 +8,7 @@ module dd3_material_material
       verdict_impossible, cause_large_strain, cause_none, cause_not_finite, cause_return_mapping
   use dd3_material_backstress_registry, only : find_backstress
   use dd3_material_composition, only : composition_t, heat_t, add_back_stresses, back_stress_of, &
-      complete, stiffness_ratio, flow_response_of, flow_stress_after, &
+      complete, plastic_work, stiffness_ratio, flow_response_of, flow_stress_after, &
       describe_composition => describe_internal_variables
   use dd3_material_description, only : internal_variable_t, law_choice_t
   use dd3_material_elasticity, only : elastic_stress, new_elasticity, &
@@ -202,13 +202,13 @@ contains
     if (.not. plastic) return
     call self%laws%criterion%second_derivative(stress - self%back_stress(internal_variables), &
         direction)
-    call flow_stress_after(self%laws, internal_variables, 0.0_wp, 0.0_wp, direction, flow)
+    if (self%laws%kinematic) call add_back_stresses(self%laws, internal_variables, 0.0_wp, &
+        direction, back)
+    call flow_stress_after(self%laws, internal_variables, 0.0_wp, 0.0_wp, direction, &
+        plastic_work(self%laws, 0.0_wp, direction, back), flow)
     rate = ratio*elastic_stress(self%laws%elasticity, direction%gradient)
     modulus = dot_product(direction%gradient, rate) + flow%slope
-    if (self%laws%kinematic) then
-      call add_back_stresses(self%laws, internal_variables, 0.0_wp, direction, back)
-      modulus = modulus + dot_product(direction%gradient, back%slope)
-    end if
+    if (self%laws%kinematic) modulus = modulus + dot_product(direction%gradient, back%slope)
     if (.not. modulus > 0.0_wp) return
     do j = 1, 6
       tangent(:, j) = tangent(:, j) - (rate(j)/modulus)*rate

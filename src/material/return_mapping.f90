@@ -14,8 +14,9 @@
 module dd3_material_return_mapping
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : solve_small
-  use dd3_material_composition, only : composition_t, back_stress_of, flow_response_of, &
-      flow_stress_after, add_back_stresses, apply_factors, stiffness_ratio
+  use dd3_material_composition, only : composition_t, plastic_work_t, back_stress_of, &
+      flow_response_of, flow_stress_after, add_back_stresses, apply_factors, plastic_work, &
+      stiffness_ratio
   use dd3_material_elasticity, only : elastic_strain, elastic_stress
   use dd3_material_flow, only : flow_direction_t, flow_response_t, back_response_t
   implicit none
@@ -150,8 +151,8 @@ contains
   end subroutine start_radially
 
   !> Return the plastic increment at which an equivalent stress that falls linearly meets the flow
-  !> stress: by its slope at the start or, where it depends on the rate and may rise at once, by
-  !> bisection.
+  !> stress at the temperature of the start: by its slope there or, where it depends on the rate and
+  !> may rise at once, by bisection.
   pure real(wp) function first_increment(laws, start, effective, value, modulus, step) &
       result(increment)
     type(composition_t), intent(in) :: laws
@@ -179,7 +180,8 @@ contains
     above = (value - step%flow%value)/modulus
     do i = 1, bisections
       above = 0.5_wp*above
-      call flow_stress_after(laws, start, increment + above, step%frequency, direction, flow)
+      call flow_stress_after(laws, start, increment + above, step%frequency, direction, &
+          plastic_work_t(), flow)
       if (flow%value < value - modulus*(increment + above)) increment = increment + above
     end do
     increment = increment + above
@@ -225,16 +227,19 @@ contains
     real(wp), intent(in) :: stress(6), increment
     type(step_t), intent(inout) :: step
 
+    type(plastic_work_t) :: work
+
     call laws%criterion%second_derivative(stress, step%direction)
     call laws%hardening%flow_stress(start(1), start(laws%first:laws%last), increment, &
         step%direction, step%flow)
-    if (laws%scaled) call apply_factors(laws, start, increment, step%frequency, step%flow)
     step%increment = increment
     step%stress = stress
     if (laws%kinematic) then
       call add_back_stresses(laws, start, increment, step%direction, step%back)
       step%stress = stress + step%back%value
     end if
+    if (laws%heated) work = plastic_work(laws, increment, step%direction, step%back)
+    if (laws%scaled) call apply_factors(laws, start, increment, step%frequency, work, step%flow)
     step%residual = step%softness*elastic_strain(laws%elasticity, step%stress - step%trial) &
         + increment*step%direction%gradient
     step%excess = step%direction%equivalent - step%flow%value

@@ -105,10 +105,11 @@ contains
           "Supports; `rotation` in `*LIMITS`, a finer mesh there."), &
       row("E244", "contact status that does not settle", &
           "Candidates change between gap, stick and slip from iteration to iteration.", &
-          "A larger `layer` in `*CONTACT`, or a smaller `penalty` in the mixed formulation."), &
+          "`cutback = on`, `line_search = on` in `*NEWTON`; a larger `layer` in `*CONTACT`, "// &
+          "or a smaller `penalty` in the mixed formulation."), &
       row("E245", "residual that does not vanish", &
           "The iterations do not converge within their number.", &
-          "`cutback = on` and more `iterations` in `*NEWTON`; the remedies of E244 in contact."), &
+          "More `iterations` in `*NEWTON`; the remedies of E244."), &
       row("E246", "force of a pressed tool that is not reached", &
           "The tool's equilibrium does not converge.", &
           "`cutback = on` in `*NEWTON`; a larger `layer` in `*CONTACT`."), &

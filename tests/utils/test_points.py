@@ -57,6 +57,23 @@ def test_values(program, files):
         close(math.cos(normal - ratio), 1, 1e-4)
 
 
+def test_rate(program, files):
+    """Check tension at two strain rates against Swift's law with Johnson and Cook's factor of the rate."""
+    sheet = files / "fast.dat"
+    sheet.write_text(STEEL + "  rate = johnson_cook C=0.02 reference=0.001\n")
+    for rate in (1e-3, 10):
+        rows = point.run(program, point.deck(sheet, ["steel"], [0], [0], 0.2, rate))[1]
+        stress, plastic = (rows["t0_0"][-1][key] for key in ("s11", "eqps"))
+        factor = 1 + 0.02 * math.log(max(rows["t0_0"][-1]["plastic_strain_rate"] / 1e-3, 1))
+        close(stress, factor * 565 * (0.007117 + plastic) ** 0.259, 1e-6)
+        close(rows["t0_0"][-1]["plastic_strain_rate"], rate, 0.01)
+        close(point.yield_stress(rows["t0_0"]), 1, 1e-6)
+    call("plot", "point", sheet, "--rate", 10, "--program", program, "--output", files / "fast.png")
+    assert (files / "fast.png").read_bytes()[:4] == b"\x89PNG"
+    titles = [point.picture([path], program, rate=10).axes[0].get_title() for path in (sheet, files / "steel.dat")]
+    assert titles == ["Tension at 10 /s (-- at 45°, : at 90°)", "Tension (-- at 45°, : at 90°)"], titles
+
+
 def test_pictures(program, files):
     """Check a picture of two files, and of finished runs."""
     picture = files / "both.png"
@@ -120,4 +137,5 @@ def test_messages(program, files):
             (("--run", files), "history.csv: not the history of single points"), ((), "a file or a --run is needed")):
         assert said in call("plot", "point", *arguments, expect=2), said
     assert not (files / "none.png").exists()
-    assert "positive numbers" in call("plot", "point", steel, "--strain", -1, expect=2)
+    for option in ("--strain", "--rate"):
+        assert "positive numbers" in call("plot", "point", steel, option, -1, expect=2)

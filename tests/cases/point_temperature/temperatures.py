@@ -9,8 +9,9 @@ half of each part is compared, as in point_rate.
 
 Tension and shear have one stress s, one strain e and one plastic strain p: s = M (e - f p), with the elastic modulus M
 and f the strain per plastic strain, whose sign is that of the flow. The equivalent stress is f s for tension and 2 f s
-for shear. It is Swift's flow stress times the factor of the temperature T, and in tension by von Mises with Prager's
-back-stress k p more; dT = 0.9 (equivalent stress) dp/(density heat capacity). Without a law of the rate dT/dp is integrated over p, and p found from the strain; with
+for shear. It is Swift's flow stress times the factor of the temperature T, and in tension by von Mises a back-stress X
+more, dX = c (Xs - X) dp, or Prager's, k dp; dT = 0.9 (equivalent stress) dp/(density heat capacity). Without a law of
+the rate dT/dp is integrated over p, and p found from the strain; with
 Cowper and Symonds' law the rates of p and T are integrated over the time. scipy's Radau method, relative tolerance
 1e-11. Nothing of the program is used.
 """
@@ -29,13 +30,18 @@ FACTORS = {
     "johnson_cook": lambda temperature: 1 - ((temperature - 20) / 480) ** 0.8,
     "table": lambda temperature: np.interp(temperature, [20, 60, 100], [1, 0.95, 0.8]),
 }
-PRAGER = {"table_prager": 800.0}  # k, MPa
+# Back-stress in tension at the end of a plastic increment, from that at its start and the sign of the flow
+BACK = {
+    "table_prager": lambda start, sign, dp: start + sign * 800 * dp,
+    "table_chaboche": lambda start, sign, dp: sign * 150 + (start - sign * 150) * math.exp(-8 * dp),
+}
 # Law, tension or shear, whether with Cowper and Symonds' law, and strain and duration of each part
 POINTS = {
     "jc_reversed": ("johnson_cook", "tension", False, [(0.15, 1), (-0.05, 1)]),
     "jc_jumps": ("johnson_cook", "tension", True, [(0.1, 10), (0.2, 1e-3)]),
     "table_sheared": ("table", "shear", False, [(0.1, 1), (0.3, 1)]),
     "table_prager": ("table", "tension", False, [(0.15, 1), (0.3, 1)]),
+    "table_chaboche": ("table", "tension", False, [(0.1, 1), (0.0, 1)]),
     "table_jumps": ("table", "tension", True, [(0.15, 10), (0.3, 1e-3)]),
 }
 
@@ -48,34 +54,38 @@ def swift(p):
 class Path:
     """A point: its moduli, and stress, strain, plastic strain and temperature so far."""
 
-    def __init__(self, law, kind, prager):
+    def __init__(self, law, kind, back):
         """Start at 40 degrees."""
-        self.factor, self.prager = FACTORS[law], prager
+        self.factor, self.back, self.back_stress = FACTORS[law], back, 0.0
         self.modulus, self.per_plastic, self.weight = YOUNG, 1.0, 1.0
         if kind == "shear":
             self.modulus, self.per_plastic, self.weight = YOUNG / (1 + POISSON), SHEAR, 2 * SHEAR
         self.stress, self.strain, self.p, self.temperature = 0.0, 0.0, 0.0, 40.0
 
     def flow_stress(self, p, temperature):
-        """Return the equivalent stress at rest, with the back-stress."""
-        return swift(p) * self.factor(temperature) + self.prager * p
+        """Return the equivalent stress at rest, without the back-stress."""
+        return swift(p) * self.factor(temperature)
 
     def at_rest(self, end):
         """Follow a part without a law of the rate; yield stress, plastic strain and temperature."""
         sign, stress, strain, start = math.copysign(1, end - self.strain), self.stress, self.strain, self.p
-        heated = solve_ivp(lambda p, t: [HEATING * self.flow_stress(p, t[0])], (start, start + 1), [self.temperature],
-                           **EXACT).sol
+        first = self.back_stress
+
+        def along(p, temperature):
+            return self.flow_stress(p, temperature) + sign * self.back(first, sign, p - start)
+
+        heated = solve_ivp(lambda p, t: [HEATING * along(p, t[0])], (start, start + 1), [self.temperature], **EXACT).sol
 
         def excess(p, now):
             elastic = sign * (stress + self.modulus * (now - strain - sign * self.per_plastic * (p - start)))
-            return self.weight * elastic - self.flow_stress(p, heated(p)[0])
+            return self.weight * elastic - along(p, heated(p)[0])
 
         for now in np.linspace(strain, end, ROWS + 1)[1:]:
             p = brentq(excess, start, start + abs(end - strain) / self.per_plastic, (now,), xtol=1e-14, rtol=1e-14)
             self.p, self.temperature = p, heated(p)[0]
-            self.stress = sign * self.flow_stress(p, self.temperature) / self.weight
+            self.stress = sign * along(p, self.temperature) / self.weight
             yield self.stress, p, self.temperature
-        self.strain = end
+        self.strain, self.back_stress = end, self.back(first, sign, self.p - start)
 
     def by_rate(self, end, duration):
         """Follow a part with Cowper and Symonds' law; yield the same."""
@@ -104,7 +114,7 @@ def main():
     print("# Written by temperatures.py: the rate equations, integrated independently.")
     print("point,increment,s11,s12,eqps,temperature")
     for name, (law, kind, viscous, parts) in POINTS.items():
-        path = Path(law, kind, PRAGER.get(name, 0.0))
+        path = Path(law, kind, BACK.get(name, lambda start, sign, dp: start))
         for part, (end, duration) in enumerate(parts):
             rows = path.by_rate(end, duration) if viscous else path.at_rest(end)
             for row, (stress, p, temperature) in enumerate(rows, start=1):

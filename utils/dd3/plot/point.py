@@ -8,8 +8,8 @@
 The files contain *MATERIAL blocks and no sheet; FILE:NAME draws one of them. Each material has one colour. All values
 are computed by the program at single points (*POINT): tension at angles to the rolling direction, and plane stress at
 fixed ratios of strain, which gives the yield surface (stresses over the flow stress) and its normals (the strains).
-Stresses include the back-stress. --run draws s11 over e11 of the points of a finished run, given its folder of results
-or its history.csv.
+Stresses include the back-stress. Laws of the strain rate are evaluated at --rate. --run draws s11 over e11 of the
+points of a finished run, given its folder of results or its history.csv.
 """
 
 import re
@@ -42,6 +42,7 @@ PROBE = f"""*MATERIAL dd3_probe
   control = {TENSION}
   target = 1e-6 0 0 0 0 0 steps=1
 """
+RATE = 1e-3  # 1/s, of a slow tension test
 PATH = [float(angle) for angle in range(0, 91, 15)]  # angles of the picture
 
 Rows = list[dict[str, float]]
@@ -63,26 +64,32 @@ def names_in(file: str, program: str | Path) -> tuple[str, list[str]]:
     return path, [chosen.lower()] if chosen else names
 
 
-def point(name: str, material: str, control: str, targets: Targets, angle: float | None = None) -> str:
-    """Return a *POINT block."""
+def point(name: str, material: str, control: str, targets: Targets, angle: float | None = None,
+          durations: Sequence[float] = ()) -> str:
+    """Return a *POINT block, with the durations of its targets if given."""
     lines = [f"*POINT {name}", f"  material = {material}", f"  control = {control}"]
     if angle is not None:
         lines.append(f"  angle = {angle:g}")
     lines += [f"  target = {' '.join(f'{value:.9g}' for value in values)} steps={steps}" for values, steps in targets]
+    if durations:
+        lines.append(f"  duration = {' '.join(f'{duration:.9g}' for duration in durations)}")
     return "\n".join(lines)
 
 
-def deck(path: str | Path, materials: Sequence[str], angles: Iterable[float], ratios: Iterable[float], strain: float
-         ) -> str:
-    """Return the input that takes each material along all paths; names: t0_45 for tension, p0_3 for strain ratios."""
+def deck(path: str | Path, materials: Sequence[str], angles: Iterable[float], ratios: Iterable[float], strain: float,
+         rate: float = RATE) -> str:
+    """Return the input that takes each material along all paths at a strain rate; names: t0_45 for tension, p0_3 for
+    strain ratios.
+    """
     blocks = [f'*INCLUDE "{Path(path).resolve()}"']
     for m, material in enumerate(materials):
         for angle in angles:
             elastic, end = [1e-6, 0, 0, 0, 0, 0], [strain, 0, 0, 0, 0, 0]
-            blocks.append(point(f"t{m}_{angle:g}", material, TENSION, [(elastic, 1), (end, 100)], angle))
+            durations = [1e-6 / rate, abs(strain) / rate]
+            blocks.append(point(f"t{m}_{angle:g}", material, TENSION, [(elastic, 1), (end, 100)], angle, durations))
         for i, ratio in enumerate(ratios):
             end = [0.05 * np.cos(ratio), 0.05 * np.sin(ratio), 0, 0, 0, 0]
-            blocks.append(point(f"p{m}_{i}", material, PLANE, [(end, 10)], 0))
+            blocks.append(point(f"p{m}_{i}", material, PLANE, [(end, 10)], 0, [0.05 / rate]))
     return "\n".join(blocks) + "\n"
 
 
@@ -151,21 +158,23 @@ def draw(axes: Sequence[Axes], points: dict[str, Rows], m: int, label: str, rati
     draw_surface(axes[3], ends, (np.cos(ratios), np.sin(ratios)), color=colour, label=label)
 
 
-def picture(files: Sequence[str | Path], program: str | Path, strain: float = 0.2, runs: Sequence[str | Path] = ()
-            ) -> Figure:
+def picture(files: Sequence[str | Path], program: str | Path, strain: float = 0.2, runs: Sequence[str | Path] = (),
+            rate: float = RATE) -> Figure:
     """Return the figure of the materials of the files and the points of finished runs."""
     ratios = np.radians(np.arange(0, 360, 5))
     figure, axes = new_figure((10, 9) if files else (7, 4.5), *((2, 2) if files else (1, 1)), squeeze=False)
     axes = axes.ravel()
-    number = 0
+    number, speed = 0, ""
     for file in each(files, "materials"):
         path, materials = names_in(str(file), program)
-        points = run(program, deck(path, materials, PATH, ratios, strain))[1]
+        points = run(program, deck(path, materials, PATH, ratios, strain, rate))[1]
+        if any(rows[-1].get("plastic_strain_rate", 0) > 0 for rows in points.values()):
+            speed = f" at {rate:g} /s"
         for m, material in enumerate(materials):
             draw(axes, points, m, material, ratios, colour_of(number))
             number += 1
     draw_runs(axes[0], runs)
-    title = "Tension (-- at 45°, : at 90°)" if files else ""
+    title = f"Tension{speed} (-- at 45°, : at 90°)" if files else ""
     axes[0].set(xlabel="logarithmic strain", ylabel="stress (MPa)", title=title)
     if files:
         axes[1].set(ylabel="r-value", title="r-values")
@@ -191,11 +200,12 @@ def main(words: Sequence[str] | None = None) -> None:
     parser.add_argument("--run", action="append", default=[], help="finished run to draw; may be repeated")
     add_program(parser)
     parser.add_argument("--strain", type=float, default=0.2, help="strain of the tension curves (0.2)")
+    parser.add_argument("--rate", type=float, default=RATE, help=f"strain rate, 1/s ({RATE:g})")
     parser.add_argument("--output", default="materials.png", help="picture (materials.png)")
     parser.add_argument("--dpi", type=int, default=100, help="dots per inch (100)")
     options = parser.parse_args(words)
-    if options.strain <= 0 or options.dpi < 1:
-        parser.error("--strain and --dpi take positive numbers")
+    if not (options.strain > 0 and options.rate > 0 and options.dpi >= 1):
+        parser.error("--strain, --rate and --dpi take positive numbers")
     if not options.file and not options.run:
         parser.error("a file or a --run is needed")
-    save(picture(options.file, options.program, options.strain, options.run), options.output, options.dpi)
+    save(picture(options.file, options.program, options.strain, options.run, options.rate), options.output, options.dpi)
