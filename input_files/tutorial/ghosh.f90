@@ -46,8 +46,8 @@ contains
     if (size(problems) > 0) return
     if (value_of(values, "K")*value_of(values, "e0")**value_of(values, "n") &
         > value_of(values, "C")) return
-    call add_problem(problems, position_of(values, "C"), "the initial flow stress is not positive", &
-        "C below K e0^n")
+    call add_problem(problems, position_of(values, "C"), &
+        "the initial flow stress is not positive", "C below K e0^n")
   end subroutine check
 
   subroutine set(self, values)

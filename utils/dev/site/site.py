@@ -57,7 +57,7 @@ def write_notebook(notebook):
 
 
 def copy_pages(pages):
-    """Copy the documents, a notebook as a page; links lead to the copies, and files that they link to are copied too."""
+    """Copy the documents, notebooks as pages; links lead to the copies, and files that they link to are copied too."""
     shutil.rmtree(pages, ignore_errors=True)
     shutil.copytree(ROOT / "docs", pages)
     for name in TOP:
