@@ -3,9 +3,9 @@
 #: {"name": "docs_navigation", "labels": ["docs"], "timeout": 60}
 """Compare the navigation of the site, utils/dev/site/mkdocs.yml, and docs/README.md with the pages of docs.
 
-Each page and notebook is in the navigation once, and docs/README.md links to each but those of the laws, which the pages of their
-kinds list. Each picture of docs is shown by a page. Formulas are on the pages as GitHub reads them: a block `math` is
-closed, and `$` comes in pairs.
+Each page and notebook is in the navigation once, and docs/README.md links to each but those of the laws, which the pages
+of their kinds list. Each picture of docs is shown by a page. Formulas are on the pages as GitHub reads them: a block
+`math` is closed, and `$` comes in pairs.
 """
 import collections
 import pathlib
