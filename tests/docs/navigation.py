@@ -3,9 +3,9 @@
 #: {"name": "docs_navigation", "labels": ["docs"], "timeout": 60}
 """Compare the navigation of the site, utils/dev/site/mkdocs.yml, and docs/README.md with the pages of docs.
 
-Each page is in the navigation once, and docs/README.md links to each but those of the laws, which the pages of their
-kinds list. Each picture of docs is shown by a page. Formulas are on the pages as GitHub reads them: a block `math` is
-closed, and `$` comes in pairs.
+Each page and notebook is in the navigation once, and docs/README.md links to each but those of the laws, which the pages
+of their kinds list. Each picture of docs is shown by a page. Formulas are on the pages as GitHub reads them: a block
+`math` is closed, and `$` comes in pairs.
 """
 import collections
 import pathlib
@@ -15,7 +15,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
 OTHER = {"CONTRIBUTING.md", "CHANGELOG.md", "CODE_OF_CONDUCT.md", "SECURITY.md"}  # of the root of the repository
-ENTRY = re.compile(r"^ +- (?:[^:\n]+: )?([\w/]+\.md|\w+/\*)$", re.MULTILINE)
+ENTRY = re.compile(r"^ +- (?:[^:\n]+: )?([\w/]+\.(?:md|ipynb)|\w+/\*)$", re.MULTILINE)
 CODE = re.compile(r"^```.*?^```|`[^`\n]*`|^ {4}[^\n]*$", re.DOTALL | re.MULTILINE)
 
 
@@ -63,7 +63,8 @@ def open_formulas(page, text):
 def main():
     """Print the errors; exit code 1 if there are any."""
     texts = {str(path.relative_to(DOCS)): path.read_text(encoding="utf-8") for path in DOCS.rglob("*.md")}
-    wrong = [*wrong_entries(texts.keys()), *unused_pictures(texts)]
+    notebooks = {str(path.relative_to(DOCS)) for path in DOCS.rglob("*.ipynb")}
+    wrong = [*wrong_entries(texts.keys() | notebooks), *unused_pictures(texts)]
     for page, text in sorted(texts.items()):
         wrong += open_formulas(page, text)
     if wrong:

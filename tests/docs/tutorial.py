@@ -112,10 +112,10 @@ def wrong_text(page, tray):
         yield f"a number that is not checked: {left[0].strip()}"
 
 
-def commands():
-    """Return the commands of the page, each with the texts that it prints."""
+def commands(page):
+    """Return the commands of a page, each with the texts that it prints."""
     found = []
-    for line in re.findall(r"^    (.+)$", PAGE.read_text(encoding="utf-8"), re.MULTILINE):
+    for line in re.findall(r"^    (.+)$", page, re.MULTILINE):
         if line.startswith("# "):
             found[-1][1].append(line[2:])
         elif not line.startswith("source "):
@@ -123,14 +123,14 @@ def commands():
     return found
 
 
-def shows(printed, text):
-    """Whether an output contains the words of a text and, within the last digits, its numbers."""
+def shows(printed, text, part=0.0):
+    """Whether an output contains the words of a text and, within the last digits or a part of them, its numbers."""
     numbers = NUMBER.findall(text)
     pattern = "(" + NUMBER.pattern + ")"
     for found in re.findall(pattern.join(map(re.escape, NUMBER.split(text))), printed):
         values = [found] if isinstance(found, str) else found
-        if all(abs(float(value) - float(number))
-               < max(LAST_DIGITS * 10.0**-len(number.partition(".")[2]), PART * abs(float(number)) * number.isdigit())
+        if all(abs(float(value) - float(number)) < max(LAST_DIGITS * 10.0**-len(number.partition(".")[2]),
+                                                       (PART if number.isdigit() else part) * abs(float(number)))
                for value, number in zip(values, numbers)):
             return True
     return False
@@ -148,7 +148,7 @@ def main():
     shutil.copytree(ROOT / "input_files" / "tutorial", work / "input_files" / "tutorial")
     folder = pathlib.Path(sys.executable).parent
     failed = 0
-    for command, texts in commands():
+    for command, texts in commands(PAGE.read_text(encoding="utf-8")):
         words = shlex.split(command)
         words[0] = str(folder / "dd3") if words[0] == "dd3" else words[0]
         if words[0].endswith(".py"):

@@ -91,7 +91,8 @@ def render(section, outcome):
     """Return the text of a section."""
     parts = [f"## {section.heading}\n", section.text.strip() + "\n"]
     if outcome.values:
-        parts.append(table(VALUE_HEAD, [max((value.row() for value in outcome.values), key=of_tolerance)]))
+        quantity, *numbers = max((value.row() for value in outcome.values), key=of_tolerance)
+        parts.append(f"*{quantity}*: " + ", ".join(map(" ".join, zip(VALUE_HEAD[1:], numbers))) + "\n")
     pictures = [name for name, _ in outcome.pictures] + ([section.picture] if section.picture else [])
     parts += [f"![{section.heading}](images/verification/{name})\n" for name in pictures]
     if section.after:

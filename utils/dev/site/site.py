@@ -7,6 +7,8 @@
 Warnings are errors. `utils/dev/site.sh` calls it with what it needs installed.
 """
 import argparse
+import base64
+import json
 import pathlib
 import re
 import shutil
@@ -35,8 +37,27 @@ print_creation_date: false
 """
 
 
+def write_notebook(notebook):
+    """Write a notebook as a page beside it: its texts, commands and outputs, the pictures as files."""
+    parts, drawn = [], 0
+    for cell in json.loads(notebook.read_text(encoding="utf-8"))["cells"]:
+        source = "".join(cell["source"])
+        parts.append(source if cell["cell_type"] == "markdown" else f"```python\n{source}\n```")
+        for output in cell.get("outputs", []):
+            data = output.get("data", {})
+            if "image/png" in data:
+                drawn += 1
+                picture = notebook.with_name(f"{notebook.stem}_{drawn}.png")
+                picture.write_bytes(base64.b64decode(data["image/png"]))
+                parts.append(f"![Picture {drawn}]({picture.name})")
+            else:
+                text = "".join(output.get("text", data.get("text/plain", ""))).rstrip()
+                parts.append(f"```text\n{text}\n```")
+    notebook.with_suffix(".md").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
+
+
 def copy_pages(pages):
-    """Copy the documents; links lead to the copies, and files that they link to are copied too."""
+    """Copy the documents, notebooks as pages; links lead to the copies, and files that they link to are copied too."""
     shutil.rmtree(pages, ignore_errors=True)
     shutil.copytree(ROOT / "docs", pages)
     for name in TOP:
@@ -46,8 +67,10 @@ def copy_pages(pages):
     shutil.copy(ROOT / "CITATION.cff", pages)
     for name in ("site.css", "frame_worker.js"):
         shutil.copy(HERE / name, pages)
+    for notebook in pages.rglob("*.ipynb"):
+        write_notebook(notebook)
     for page in pages.rglob("*.md"):
-        text = page.read_text(encoding="utf-8")
+        text = page.read_text(encoding="utf-8").replace(".ipynb)", ".md)")
         up = "../" * (len(page.relative_to(pages).parts) - 1)
         text = re.sub(r"\]\(\s*(?:\.\./)+(CONTRIBUTING\.md|CHANGELOG\.md|CITATION\.cff)", rf"]({up}\1", text)
         text = re.sub(r"\]\(\s*(?:\.\./)+LICENSE\)", f"]({up}LICENSE.txt)", text)
@@ -70,7 +93,8 @@ def navigation(pages):
     """Return the settings of MkDocs with the pages of the folders that they name."""
     def listed(line):
         return "\n".join(f"{line[1]}- {path.relative_to(pages)}" for path in sorted((pages / line[2]).glob("*.md")))
-    return re.sub(r"^( *)- (\w+)/\*$", listed, (HERE / "mkdocs.yml").read_text(encoding="utf-8"), flags=re.MULTILINE)
+    settings = (HERE / "mkdocs.yml").read_text(encoding="utf-8").replace(".ipynb", ".md")
+    return re.sub(r"^( *)- (\w+)/\*$", listed, settings, flags=re.MULTILINE)
 
 
 def check_hosts(site):
