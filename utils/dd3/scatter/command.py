@@ -161,9 +161,9 @@ def write_bands(scatter: Scatter, runs: list[Path], work: Path) -> None:
     figure, axes = new_figure((7, 2.6 * len(scatter.bands)), len(scatter.bands), squeeze=False)
     tables = []
     for name, place in zip(scatter.bands, axes[:, 0]):
-        lengths, values = profiles(runs, name, scatter.mirror)
+        lengths, values, label = profiles(runs, name, scatter.mirror)
         found = bands(values)
-        draw(place, lengths, found, name)
+        draw(place, lengths, found, label)
         tables.append(pd.DataFrame({"band": name, "length": lengths, "mean": found.mean, "deviation": found.deviation,
                                     **dict(zip(("q05", "q50", "q95"), found.quantiles))}))
     pd.concat(tables).to_csv(work / "bands.csv", index=False, float_format="%.7g")

@@ -24,22 +24,24 @@ COUNT = 101  # points along a section
 
 
 class Map(NamedTuple):
-    """A field on the upper face of a sheet: the sheet, the step of its mesh, and the values at all nodes."""
+    """A field on the upper face of a sheet: the sheet, the step of its mesh, the values at all nodes, and its name with
+    the unit."""
 
     sheet: Sheet
     step: int
     values: np.ndarray
+    label: str
 
 
 def field_map(run: Path, field: str, mirror: Sequence[str]) -> Map:
     """Return a field at the end of a run; springback: distance from the drawn shape after the best fit, mm."""
     sheet = Sheet(run)
     if field != SPRINGBACK:
-        return Map(sheet, sheet.last, sheet.component(sheet.last, field)[0])
+        return Map(sheet, sheet.last, *sheet.component(sheet.last, field))
     found = springback.find(sheet, read_job(run)["phases"], mirror)
     if found is None:
         raise Problem(f"{run}: no springback, as its last phase does not release the sheet")
-    return Map(sheet, found.step, found.distance())
+    return Map(sheet, found.step, found.distance(), f"{SPRINGBACK} (mm)")
 
 
 def at_point(field: Map, place: Sequence[float]) -> float:
@@ -89,14 +91,16 @@ def scalar(run: Path, name: str, places: Mapping[str, Sequence[float]], mirror: 
     return at_point(field_map(run, field, mirror), places[place])
 
 
-def profiles(runs: Sequence[Path], name: str, mirror: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lengths along a section, mm, and the results of the runs there (runs, places): FIELD along PLANE."""
+def profiles(runs: Sequence[Path], name: str, mirror: Sequence[str]) -> tuple[np.ndarray, np.ndarray, str]:
+    """Return the lengths along a section, mm, the results of the runs there (runs, places), FIELD along PLANE, and the
+    name of the field with its unit."""
     field, sign, text = name.partition(ALONG)
     if not sign:
         raise Problem(f"'{name}' is no band; expected FIELD along PLANE, such as thinning along y=0")
-    lines = [along(field_map(run, field, mirror), text) for run in runs]
+    fields = [field_map(run, field, mirror) for run in runs]
+    lines = [along(one, text) for one in fields]
     lengths = np.linspace(0, min(line[0][-1] for line in lines), COUNT)
-    return lengths, np.array([np.interp(lengths, *line) for line in lines])
+    return lengths, np.array([np.interp(lengths, *line) for line in lines]), fields[0].label
 
 
 def draw(axes: Axes, lengths: np.ndarray, found: Bands, label: str) -> None:
