@@ -3,6 +3,7 @@
 
 import argparse
 import difflib
+import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -89,5 +90,7 @@ def dispatch(words: Sequence[str], name: str = "dd3", summary: str = "Tools for 
 
 
 def main(words: Sequence[str] | None = None) -> None:
-    """Run the command of the words, by default those of the command line."""
+    """Run the command of the words, by default those of the command line, with one thread of OpenBLAS: beside other
+    runs its threads wait for each other in small systems of equations."""
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # read when scipy loads its own
     run(lambda: dispatch(sys.argv[1:] if words is None else words))
