@@ -1,37 +1,48 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Time the stress update with its tangent for the registered laws: each yield criterion with
-!> Swift's law, each other law with von Mises, in ns; tests/benchmark/laws.py makes a table of it.
+!> Swift's law, each other law with von Mises, in ns; limits, which have no influence on the stress,
+!> beside none. tests/benchmark/laws.py makes tables of it.
+!>
+!>     benchmark_material [kind]
 program benchmark_material
   use dd3_base_clock, only : wall_time
   use dd3_base_kinds, only : wp
   use dd3_base_verdict, only : verdict_t
   use dd3_linalg_tensor, only : kelvin_deviator
-  use dd3_material_check, only : describe_laws, law_backstress, law_hardening, law_modulus, &
-      law_rate, law_temperature, law_yield
+  use dd3_material_check, only : describe_laws, law_backstress, law_fracture, law_hardening, &
+      law_modulus, law_rate, law_temperature, law_yield
   use dd3_material_description, only : description_t, law_choice_t
+  use dd3_material_limits, only : forming_limit_t
   use dd3_material_material, only : material_t, new_material
   use parameter_sets, only : law_of, published_sets, set_t
   implicit none
 
-  !> Number of states; the best of several rounds over them counts.
-  integer, parameter :: states = 1000, rounds = 20
+  !> Number of states; the best of several rounds over them counts, more for a single kind.
+  integer, parameter :: states = 1000, few = 20, many = 400
   !> Norms of the strain increments, and their rate, 1/s.
   real(wp), parameter :: sizes(4) = [1.0e-5_wp, 1.0e-4_wp, 1.0e-3_wp, 1.0e-2_wp], speed = 0.01_wp
   integer, parameter :: kinds(*) = [law_yield, law_hardening, law_backstress, law_modulus, &
-      law_rate, law_temperature]
+      law_rate, law_temperature, law_fracture]
   character(len=*), parameter :: titles(*) = [character(len=11) :: "yield", "hardening", &
-      "back-stress", "modulus", "rate", "temperature"]
+      "back-stress", "modulus", "rate", "temperature", "limits"]
   type(description_t), allocatable :: laws(:)
   type(set_t), allocatable :: sets(:)
-  integer :: i, k
+  character(len=len(titles)) :: only
+  integer :: i, k, rounds
 
+  only = ""
+  if (command_argument_count() > 0) call get_command_argument(1, only)
+  rounds = merge(few, many, only == "")
   sets = published_sets()
   print '(a)', "kind law elastic 1e-5 1e-4 1e-3 1e-2 ns iterations"
   do k = 1, size(kinds)
+    if (only /= "" .and. only /= titles(k)) cycle
     call describe_laws(kinds(k), laws)
+    if (kinds(k) == law_fracture) call measure(k, law_choice_t("none"))
     do i = 1, size(laws)
       call measure(k, choice_of(laws(i)))
     end do
+    if (kinds(k) == law_fracture) call measure(k, law_choice_t("forming_limit"))
   end do
 
 contains
@@ -57,6 +68,7 @@ contains
     type(material_t) :: material
     type(law_choice_t) :: choice(size(kinds))
     type(law_choice_t), allocatable :: back(:)
+    type(forming_limit_t) :: curve
     real(wp) :: plastic_time(size(sizes)), iterations(size(sizes)), elastic_time
     integer :: n
 
@@ -65,8 +77,12 @@ contains
     choice(k) = law
     allocate (back(merge(1, 0, kinds(k) == law_backstress)))
     if (size(back) > 0) back(1) = law
+    if (law%name == "forming_limit") then
+      curve%minor = [-0.2_wp, 0.0_wp, 0.1_wp, 0.3_wp]
+      curve%major = [0.45_wp, 0.25_wp, 0.3_wp, 0.35_wp]
+    end if
     call new_material(material, 2.1e5_wp, 0.3_wp, choice(1), choice(2), back, choice(4), &
-        choice(5), choice(6))
+        choice(5), choice(6), fracture=choice(7), forming_limit=curve)
     do n = 1, size(sizes)
       call time_updates(material, sizes(n), .true., plastic_time(n), iterations(n))
     end do

@@ -12,8 +12,9 @@
 - Code blocks that are complete input files pass `dd3imp --check`; those of single points run to their end.
 - docs/messages.md is the output of `dd3imp --help messages`, and the program uses each code of it.
 - Each law has a page docs/laws/<law>.md with its picture, linked from the page of its kind. The table of the page has
-  the parameters that `dd3imp --help <law>` prints, with their units, bounds and defaults. The input file
-  input_files/laws/<law>.dat runs to its end.
+  the parameters that `dd3imp --help <law>` prints, with their units, bounds and defaults; equal ones may share a row.
+  The input file input_files/laws/<law>.dat runs to its end. The laws of friction have one page, friction.md, linked from
+  the manual; rows of its table begin with the laws that have the parameter.
 """
 import json
 import pathlib
@@ -33,7 +34,7 @@ LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
 FENCE = re.compile(r"^```\w*\n(.*?)^```", re.DOTALL | re.MULTILINE)
 GATHERED = {"yield": "yield_criteria.md", "hardening": "hardening_laws.md", "backstress": "hardening_laws.md",
             "modulus": "hardening_laws.md", "rate": "hardening_laws.md",
-            "temperature": "hardening_laws.md", "fracture": "forming_limits.md"}
+            "temperature": "hardening_laws.md", "fracture": "forming_limits.md", "friction": "manual.md"}
 LAW = re.compile(r"^### `(\w+) = law|^\| `(\w+)` \|", re.MULTILINE)
 PARAMETER = re.compile(r"^  (\S+) = (a \w.*?) \((\w.*)\)$", re.MULTILINE)
 BOUND = re.compile(r"[<>]=? ")
@@ -167,6 +168,30 @@ def parameters_of(said):
     return found
 
 
+def parameter_rows(text):
+    """Yield the rows of the tables of parameters of a page: names in the first cell, unit, bounds and default."""
+    for line in re.findall(r"^\| `.*\|$", text, re.MULTILINE):
+        names, _, *rest = (cell.strip() for cell in line.strip("|").split("|"))
+        yield re.findall(r"`([^`]+)`", names), rest
+
+
+def law_table(program, law, text):
+    """Return the parameters of a law by its page and by the program."""
+    table = {name: rest for names, rest in parameter_rows(text) for name in names}
+    return table, parameters_of(run(program, "--help", law)[0])
+
+
+def friction_table(program, text):
+    """Return the parameters of the laws of friction, named `law: parameter`, by their page and by the program."""
+    table, wanted = {}, {}
+    for (*laws, name), (units, *rest) in parameter_rows(text):
+        for k, law in enumerate(laws):
+            table[f"{law}: {name}"] = [(units.split("; ") * len(laws))[k], *rest]
+    for part in re.split(r"^friction_law = ", run(program, "--help", "friction_law")[0], flags=re.MULTILINE)[1:]:
+        wanted |= {f"{part.split()[0]}: {name}": row for name, row in parameters_of(part).items()}
+    return table, wanted
+
+
 def broken_page(program, kind, law):
     """Yield the errors of the page of a law."""
     page = ROOT / "docs" / "laws" / f"{law}.md"
@@ -174,14 +199,10 @@ def broken_page(program, kind, law):
         yield "the page does not exist"
         return
     text = page.read_text(encoding="utf-8")
-    table = {}
-    for line in re.findall(r"^\| `.*\|$", text, re.MULTILINE):
-        name, _, *rest = (cell.strip() for cell in line.strip("|").split("|"))
-        table[name.strip("`")] = rest
-    wanted = parameters_of(run(program, "--help", law)[0])
+    table, wanted = friction_table(program, text) if kind == "friction" else law_table(program, law, text)
     for name in sorted(wanted.keys() | table.keys()):
         if wanted.get(name) != table.get(name):
-            yield f"the parameter {name} has {table.get(name)} in the table, {wanted.get(name)} by dd3imp --help {law}"
+            yield f"the parameter {name} has {table.get(name)} in the table, {wanted.get(name)} by dd3imp --help"
     picture = ROOT / "docs" / "images" / "laws" / f"{law}.png"
     if f"](../images/laws/{law}.png)" not in text:
         yield "its picture is missing; draw it: utils/dev/law_pictures.py"
@@ -198,7 +219,7 @@ def broken_page(program, kind, law):
 
 def broken_laws(program, reference):
     """Yield the errors of the pages of the laws."""
-    laws = laws_of(reference)
+    laws = [*laws_of(reference), ("friction", "friction")]
     for kind, law in laws:
         yield from (f"docs/laws/{law}.md: {problem}" for problem in broken_page(program, kind, law))
     for page in sorted((ROOT / "docs" / "laws").glob("*.md")):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draw the pictures of docs/laws: one for each yield criterion, hardening law, back-stress law, the chord modulus,
-laws of the strain rate and of fracture.
+laws of the strain rate and of fracture, and one of the laws of friction.
 
     utils/dev/law_pictures.py --program build/release/dd3imp
     utils/dev/law_pictures.py hill48 swift --program build/release/dd3imp --output /tmp
@@ -11,12 +11,14 @@ yield surface with its normals, r-values and yield stresses by angle; the broken
 Hardening laws: tension as true and as nominal stress, with a dot at the largest force. Back-stresses and laws that
 depend on the strain path: reversals and changes of the path. Chord modulus: tension with unloadings. Strain rate:
 tension at four rates, and with jumps of the rate and relaxation. Fracture: damage, and strains to fracture in plane
-stress; of a table over triaxiality and Lode angle.
+stress; of a table over triaxiality and Lode angle. Friction: coefficients of a strip that is drawn under a die, over
+pressure and speed.
 """
 
 import argparse
 import io
 import re
+import tempfile
 from pathlib import Path
 
 import matplotlib
@@ -26,7 +28,9 @@ from PIL import Image
 
 from dd3.errors import Problem, run
 from dd3.plot import point as pp
+from dd3.programs import command, launch
 from dd3.progress import each
+from dd3.tables import read_table
 from dd3.tools.blocks import read_blocks
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -295,6 +299,32 @@ def fracture_table(program, law, figure):
     legend(axes[1], title="Lode angle")
 
 
+def friction(program, law, figure):
+    """Draw coefficients over the contact pressure, and over the speed of sliding."""
+    axes = figure.subplots(1, 2, sharey=True)
+    for label, words in BY_PRESSURE.items():
+        axes[0].plot(*coefficients(program, law, words), label=label)
+    for label, words in BY_SPEED.items():
+        ends = [coefficients(program, law, words, 1000, 5 / speed)[1][-1] for speed in SPEEDS]
+        axes[1].plot(SPEEDS, ends, marker="o", markersize=3, label=label)
+    axes[0].set(xlabel="contact pressure (MPa)", ylabel="coefficient of friction", ylim=(0, None))
+    axes[1].set(xlabel="speed of sliding (mm/s)")
+    for part in axes:
+        legend(part)
+
+
+def coefficients(program, law, words, force=15000, duration=1):
+    """Return pressures and coefficients of a run of the input file of friction."""
+    with tempfile.TemporaryDirectory() as folder:
+        settings = {"law": words, "force": force, "duration": f"{duration:.8g}"}
+        done = launch(command(program, DECKS / f"{law}.dat", folder, ["--quiet"], settings))
+        if done.code != 0:
+            raise Problem(done.errors)
+        rows = [row for row in read_table(Path(folder) / "history.csv") if row["phase"] == "draw"]
+    pressures, along, normal = (column.astype(float) for column in columns(rows, "die_pressure", "die_fx", "die_fz"))
+    return pressures, along / normal
+
+
 def columns(rows, *keys):
     """Return columns of rows."""
     return [np.array([row[key] for row in rows]) for key in keys]
@@ -311,6 +341,12 @@ FRACTURE = """*MATERIAL steel
   hardening = linear Y0=200 H=1000
   fracture = table {} {}
 """
+# Laws of friction of the picture, 0.15 times their factors, and speeds of sliding, mm/s.
+BY_PRESSURE = {"power n = 0.8": "power p0=10 n=0.8 p_min=2 p_max=100", "power n = 0.9": "power p0=10 n=0.9 p_min=2",
+               "table": "table 0:1.1 20:0.9 100:0.7"}
+BY_SPEED = {"stribeck n = 1": "stribeck v0=20 r=0.6 n=1", "stribeck n = 2": "stribeck v0=20 r=0.6 n=2",
+            "speed_table": "speed_table 0:1 30:0.8 80:0.9"}
+SPEEDS = np.array([0.1, *range(5, 105, 5)])
 PICTURES = {
     "von_mises": (isotropic, {}), "hill48": (orthotropic, {"measured": STEEL}), "hosford": (isotropic, {}),
     "yld91": (orthotropic, {"measured": STEEL}), "karafillis_boyce": (orthotropic, {}),
@@ -323,7 +359,7 @@ PICTURES = {
     "yoshida_uemori": (yoshida_uemori, {}), "chord": (chord, {}),
     **{law: (rates, {}) for law in ("cowper_symonds", "johnson_cook", "power", "curves")}, "prager": (prager, {}),
     "hosford_coulomb": (fracture, {}), "fracture_table": (fracture_table, {}),
-    "lemaitre_chaboche": (lemaitre_chaboche, {}),
+    "lemaitre_chaboche": (lemaitre_chaboche, {}), "friction": (friction, {}),
 }
 
 

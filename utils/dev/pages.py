@@ -113,7 +113,8 @@ PAGES = {
         "utils/dev/benchmark.py --program {program} --write docs/reports/speed.md input_files/bending/bending.dat "
         "input_files/bending/fine.dat",
         "tests/benchmark/speed.py --program {program} --increments 2 --write",
-        "cmake --build {build} --target benchmark_material", "tests/benchmark/laws.py --build {build} --write",
+        "cmake --build {build} --target benchmark_material benchmark_friction",
+        "tests/benchmark/laws.py --build {build} --write",
         f"tests/benchmark/peer.py{RUN}")),
     "split_ring": forming("split_ring", 8),
     "release": Page(10, f"{MECHANICS} input_files", (f"tests/forming/release.py{RUN}",)),
