@@ -46,15 +46,14 @@ tolerance.
 V3 is in unit tests, V26, V28 and V30 are reports ([square cup](reports/square_cup.md), [round
 cup](reports/round_cup.md), [rail](reports/rail.md)).
 
-The tests `case_bending_*` that have no section here compare the bending test with the program's own runs, with halved
-limits of the predictor or on a finer mesh: they are no independent verification.
+The tests `case_bending_*` without a section here compare the bending test with the program's own runs, with halved
+limits of the predictor or a finer mesh: no independent verification.
 
 The times in the studies of refinement are those of one thread of a busy machine: compare within a picture.
 """
 BESIDE = f"""Unknowns and seconds of the coarsest mesh of each element within {100 * ACCURATE:g} %, from the refinements
-below; none if no mesh is within this error. No element is the best in all cases: `solid_shell` is best in the bending
-of sheets, `hex8` and the quadratic elements in the plastic flow of thick bodies, the quadratic ones where the stress is
-smooth.
+below; none if no mesh is within this error. `solid_shell` is best in the bending of sheets, `hex8` and the quadratic
+elements in the plastic flow of thick bodies, the quadratic ones where the stress is smooth.
 """
 
 
