@@ -32,6 +32,8 @@ module dd3_tools_hit
   !> A node is beside the border or a sharp edge from this tangential distance on, relative to the
   !> surface's size.
   real(wp), parameter :: beside_border = 1.0e-6_wp, beside_sharp_edge = 1.0e-9_wp
+  !> Derivative of the position by a parameter that is round-off, over the surface's size.
+  real(wp), parameter :: round_off = 1.0e-12_wp
   !> Smallest det A, relative to det a; below it the node is near the centre of curvature.
   real(wp), parameter :: smallest_determinant = 1.0e-8_wp
 
@@ -121,7 +123,7 @@ contains
     integer, intent(in) :: k
     type(projection_t), intent(in) :: projection
 
-    real(wp) :: tangential
+    real(wp) :: tangential, length
     integer :: a, e
 
     location = on_patch
@@ -129,8 +131,9 @@ contains
       if (projection%active(a) == 0) cycle
       e = edge_number(a, projection%active(a) > 0)
       if (surface%edge(e, k)%pole) cycle
-      tangential = abs(dot_product(projection%offset, projection%first(:, a))) &
-          /max(sqrt(dot_product(projection%first(:, a), projection%first(:, a))), tiny(1.0_wp))
+      length = norm2(projection%first(:, a))
+      if (length <= round_off*surface%size) cycle ! at a pole, without a direction
+      tangential = abs(dot_product(projection%offset, projection%first(:, a)))/length
       if (surface%edge(e, k)%patch == 0) then
         if (tangential > beside_border*surface%size) location = on_border
       else if (.not. surface%edge(e, k)%smooth) then

@@ -31,7 +31,8 @@ RUNS = {"Voce, von Mises, 8 x 16": {"divisions": "8 16 1", "material": "voce_von
 def bottom(folder):
     """Return the height of the lower face of the cup's bottom, mm."""
     fields = Fields(folder)
-    start, now = fields.points(0), fields.points(fields.count - 1)
+    last = fields.count - 1
+    start, now = fields.start(last), fields.points(last)
     return now[np.hypot(start[:, 0], start[:, 1]) < 1e-6, 2].min()
 
 

@@ -190,9 +190,10 @@ EXAMPLES = {example.name: example for example in (
     Example("round_cup_aa6016", INPUT / "round_cup_aa6016" / "round_cup_aa6016.dat",
             "--mirror x y --hide holder --hide die --zoom 0.7", heights),
     Example("round_cup", INPUT / "round_cup" / "round_cup.dat", "--mirror x y --hide holder --hide die", ears),
-    Example("split_ring", INPUT / "split_ring" / "split_ring.dat", "--mirror x y --hide holder --hide die", opening),
+    Example("split_ring", INPUT / "split_ring" / "split_ring.dat", "--mirror x y --hide holder --hide die", opening,
+            {"divisions": "6 12 1", "levels": 2}),
     Example("hemispherical_punch", HEMISPHERE / "case.dat", "--mirror x y --hide die", force,
-            {"core": 10, "ring": 20}),
+            {"core": 5, "ring": 10, "levels": 2}),
     Example("rail", INPUT / "rail" / "rail.dat", "--at draw --hide holder --hide die --zoom 0.75", free_shape),
 )}
 

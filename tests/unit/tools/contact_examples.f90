@@ -88,11 +88,13 @@ contains
   end function cubic_fillet
 
   !> Make an exact octant of a sphere around the origin: rational biquadratic, pole at v = 1.
-  function octant(radius, quarter) result(patch)
+  function octant(radius, quarter, rotation) result(patch)
     !> mm.
     real(wp), intent(in) :: radius
     !> Number of quarter turns around z.
     integer, intent(in) :: quarter
+    !> That follows these.
+    real(wp), intent(in), optional :: rotation(3, 3)
     type(patch_t) :: patch
 
     real(wp) :: p(3, 3, 3), w(3, 3), around(2, 3), up(2, 3), weight(3), turn(2, 2), xy(2)
@@ -109,6 +111,7 @@ contains
       do i = 1, 3
         xy = matmul(turn, around(:, i))*up(1, j)
         p(:, i, j) = radius*[xy(1), xy(2), up(2, j)]
+        if (present(rotation)) p(:, i, j) = matmul(rotation, p(:, i, j))
         w(i, j) = weight(i)*weight(j)
       end do
     end do
