@@ -75,9 +75,10 @@ def entities_of(data: bytes) -> tuple[dict[int, str], dict[int, int], set[int]]:
         found = ENTITY.search(statement)
         if found:
             number = int(found[1])
-            names = re.findall(rb"([A-Z_0-9]+)\s*\(", statement[found.end(1):], re.IGNORECASE)
-            kinds[number] = "+".join(sorted({name.decode().upper() for name in names})) if found[2] else \
-                found[3].decode().upper()
+            kinds[number] = found[3].decode().upper()
+            if found[2]:
+                names = re.findall(rb"([A-Z_0-9]+)\s*\(", statement[found.end(1):], re.IGNORECASE)
+                kinds[number] = "+".join(sorted({name.decode().upper() for name in names}))
             lines[number] = line + statement[:found.start()].count(b"\n")
             refers[number] = [int(word) for word in re.findall(rb"#(\d+)", statement[found.end():])]
         line += statement.count(b"\n")
