@@ -88,7 +88,9 @@ def entities_of(data: bytes) -> tuple[dict[int, str], dict[int, int], set[int]]:
 
 def reach(kinds: dict[int, str], refers: dict[int, list[int]]) -> set[int]:
     """Return the entities that products and shapes refer to; a shape's items only where they are geometry."""
-    waiting = [number for number, kind in kinds.items() if any(ROOTS.fullmatch(name) for name in kind.split("+"))]
+    roots, shapes = ({kind for kind in set(kinds.values()) if any(map(names.fullmatch, kind.split("+")))}
+                     for names in (ROOTS, SHAPES))
+    waiting = [number for number, kind in kinds.items() if kind in roots]
     reached: set[int] = set()
     while waiting:
         number = waiting.pop()
@@ -96,7 +98,7 @@ def reach(kinds: dict[int, str], refers: dict[int, list[int]]) -> set[int]:
             continue
         reached.add(number)
         further = refers[number]
-        if any(SHAPES.fullmatch(name) for name in kinds[number].split("+")):
+        if kinds[number] in shapes:
             further = [k for k in further if "CONTEXT" in kinds.get(k, "") or ITEMS.fullmatch(kinds.get(k, ""))]
         waiting += further
     return reached
