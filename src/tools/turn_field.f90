@@ -190,8 +190,8 @@ contains
     !> Unit vector, and diameter of the ball, mm.
     real(wp), intent(in) :: axis(3), length
 
-    real(wp) :: place(size(x, 2)), component(size(x, 2)), low, high
-    integer :: i, j
+    real(wp) :: place(size(x, 2)), component(size(x, 2)), low, high, bound, along
+    integer :: chosen(size(x, 2)), i, j, n
 
     place = matmul(axis, x)
     component = matmul(axis, normal)
@@ -200,10 +200,17 @@ contains
     ! Differences below that of the two ends, if it counts, need not be searched.
     largest = of_pair(minloc(component, dim=1), maxloc(component, dim=1), 0.0_wp)
     do j = 2, size(x, 2)
-      if (max(component(j) - low, high - component(j)) <= max(largest, straight)) cycle
+      bound = max(largest, straight)
+      if (max(component(j) - low, high - component(j)) <= bound) cycle
+      ! Most pairs do not count: a loop without branches finds the others.
+      n = 0
       do i = 1, j - 1
-        if (abs(component(i) - component(j)) <= max(largest, straight)) cycle
-        largest = of_pair(i, j, largest)
+        along = place(i) - place(j)
+        chosen(n + 1) = i
+        if ((component(i) - component(j))*along > bound*abs(along)) n = n + 1
+      end do
+      do i = 1, n
+        largest = of_pair(chosen(i), j, largest)
       end do
     end do
 

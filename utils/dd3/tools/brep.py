@@ -19,7 +19,7 @@ TITLE = r"^Locations (\d+)\s*\n"
 FLAGS = re.compile(r"[01]{7}$")
 # Records of an edge: its curve, its curve on a surface, both its curves on a surface where this is closed.
 CURVE, ON_SURFACE, ON_SEAM = "1", "2", "3"
-ORDER = ("So", "Sh", "Fa", "Wi", "Ed", "Ve")
+ORDER = ("So", "Sh", "Fa", "Wi", "Ed", "Ve")  # a shape holds only those of later kinds
 
 
 @dataclass
@@ -97,7 +97,7 @@ class Topology:
     def found(self, kind: str) -> list[Part]:
         """Return the shapes of a kind with their locations in the order in which Gmsh numbers them."""
         result: dict[tuple[int, Chain], Part] = {}
-        for top in ORDER:
+        for top in ORDER[:ORDER.index(kind) + 1]:
             for part, place in self.tops(self.root, (), top):
                 for one, inner in self.tops(part, place, kind):
                     result.setdefault((one.record, inner), Part(one.record, one.forward, self.number(inner)))
@@ -106,8 +106,11 @@ class Topology:
     def tops(self, part: Part, outer: Chain, kind: str) -> Iterator[tuple[Part, Chain]]:
         """Return the shapes of a kind in a shape within a location, from outside inwards, with their locations."""
         place = product(outer, self.chains[part.place]) if part.place else outer
-        if self.records[part.record].kind == kind:
+        own = self.records[part.record].kind
+        if own == kind:
             yield Part(part.record, part.forward), place
+            return
+        if own in ORDER and ORDER.index(own) > ORDER.index(kind):
             return
         for one in self.records[part.record].parts:
             yield from self.tops(one, place, kind)

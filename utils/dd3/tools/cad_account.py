@@ -75,9 +75,10 @@ def entities_of(data: bytes) -> tuple[dict[int, str], dict[int, int], set[int]]:
         found = ENTITY.search(statement)
         if found:
             number = int(found[1])
-            names = re.findall(rb"([A-Z_0-9]+)\s*\(", statement[found.end(1):], re.IGNORECASE)
-            kinds[number] = "+".join(sorted({name.decode().upper() for name in names})) if found[2] else \
-                found[3].decode().upper()
+            kinds[number] = found[3].decode().upper()
+            if found[2]:
+                names = re.findall(rb"([A-Z_0-9]+)\s*\(", statement[found.end(1):], re.IGNORECASE)
+                kinds[number] = "+".join(sorted({name.decode().upper() for name in names}))
             lines[number] = line + statement[:found.start()].count(b"\n")
             refers[number] = [int(word) for word in re.findall(rb"#(\d+)", statement[found.end():])]
         line += statement.count(b"\n")
@@ -87,7 +88,9 @@ def entities_of(data: bytes) -> tuple[dict[int, str], dict[int, int], set[int]]:
 
 def reach(kinds: dict[int, str], refers: dict[int, list[int]]) -> set[int]:
     """Return the entities that products and shapes refer to; a shape's items only where they are geometry."""
-    waiting = [number for number, kind in kinds.items() if any(ROOTS.fullmatch(name) for name in kind.split("+"))]
+    roots, shapes = ({kind for kind in set(kinds.values()) if any(map(names.fullmatch, kind.split("+")))}
+                     for names in (ROOTS, SHAPES))
+    waiting = [number for number, kind in kinds.items() if kind in roots]
     reached: set[int] = set()
     while waiting:
         number = waiting.pop()
@@ -95,7 +98,7 @@ def reach(kinds: dict[int, str], refers: dict[int, list[int]]) -> set[int]:
             continue
         reached.add(number)
         further = refers[number]
-        if any(SHAPES.fullmatch(name) for name in kinds[number].split("+")):
+        if kinds[number] in shapes:
             further = [k for k in further if "CONTEXT" in kinds.get(k, "") or ITEMS.fullmatch(kinds.get(k, ""))]
         waiting += further
     return reached

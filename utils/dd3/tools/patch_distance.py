@@ -61,6 +61,12 @@ class Distance:
         row = np.arange(len(points))
         return place[row, best], normal[row, best]
 
+    def upper_bound(self, points: np.ndarray) -> np.ndarray:
+        """Return the distances of points (n, 3) from the patch of their nearest sample, mm: the surface may be closer
+        elsewhere."""
+        owner = self.owner[self.tree.query(points)[1]]
+        return np.asarray(np.linalg.norm(closest(self.net[owner], points)[0] - points, axis=1))
+
     def permitted(self, points: np.ndarray, distance: float) -> np.ndarray:
         """Return the points nearest to points (n, 3) that are at least at a distance from the surface, on its side."""
         result = points.copy()
@@ -120,22 +126,33 @@ def closest(net: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray
     u, v = (part.ravel() for part in np.meshgrid(start, start))
     best = np.linalg.norm(points_at(net, u, v) - points[:, None], axis=2).argmin(axis=1)
     uv = np.stack([u[best], v[best]], axis=1)
+    left = np.arange(len(points))
     for _ in range(STEPS):
-        place, along_u, along_v = tangents(net, uv)
-        gap = points - place
-        a, b, d = (along_u**2).sum(axis=1), (along_u * along_v).sum(axis=1), (along_v**2).sum(axis=1)
-        right_u, right_v = (along_u * gap).sum(axis=1), (along_v * gap).sum(axis=1)
-        # One parameter alone where the other is at its end.
-        held_u = ((uv[:, 0] <= 0) & (right_u < 0)) | ((uv[:, 0] >= 1) & (right_u > 0))
-        held_v = ((uv[:, 1] <= 0) & (right_v < 0)) | ((uv[:, 1] >= 1) & (right_v > 0))
-        b = np.where(held_u | held_v, 0.0, b)
-        regular = np.maximum(a * d - b * b, 1e-300)
-        move = np.stack([np.where(held_u, 0.0, (d * right_u - b * right_v) / regular),
-                         np.where(held_v, 0.0, (a * right_v - b * right_u) / regular)], axis=1)
-        uv = np.clip(uv + np.clip(move, -0.5, 0.5), 0.0, 1.0)
+        uv[left], moved = stepped(net[left], points[left], uv[left])
+        left = left[moved]  # another step of the others would give the same
+        if not len(left):
+            break
     place, along_u, along_v = tangents(net, uv)
     normal = np.cross(along_u, along_v)
     return place, normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+
+
+def stepped(net: np.ndarray, points: np.ndarray, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the parameters of each patch (n, 2) after a step towards the point closest to its point (n, 3), and
+    whether they changed (n,)."""
+    place, along_u, along_v = tangents(net, uv)
+    gap = points - place
+    a, b, d = (along_u**2).sum(axis=1), (along_u * along_v).sum(axis=1), (along_v**2).sum(axis=1)
+    right_u, right_v = (along_u * gap).sum(axis=1), (along_v * gap).sum(axis=1)
+    # One parameter alone where the other is at its end.
+    held_u = ((uv[:, 0] <= 0) & (right_u < 0)) | ((uv[:, 0] >= 1) & (right_u > 0))
+    held_v = ((uv[:, 1] <= 0) & (right_v < 0)) | ((uv[:, 1] >= 1) & (right_v > 0))
+    b = np.where(held_u | held_v, 0.0, b)
+    regular = np.maximum(a * d - b * b, 1e-300)
+    move = np.stack([np.where(held_u, 0.0, (d * right_u - b * right_v) / regular),
+                     np.where(held_v, 0.0, (a * right_v - b * right_u) / regular)], axis=1)
+    result = np.clip(uv + np.clip(move, -0.5, 0.5), 0.0, 1.0)
+    return result, (result != uv).any(axis=1)
 
 
 def tangents(net: np.ndarray, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -68,20 +68,24 @@ def on_tool(surface: Surface, options: ToolSettings) -> Curves:
     if not options.curves:
         return Curves()
     matrix, move = rotation(options.rotate), np.array(options.move)
-    distance = Distance(surface.net, options.thickness)
-    found = [led_over(points @ matrix.T + move, distance, options) for points in options.curves]
-    return Curves([points for points, _ in found], max(off for _, off in found))
+    lines = [divided(points @ matrix.T + move, SPACING * options.thickness) for points in options.curves]
+    fine = np.concatenate([points for points, _ in lines])
+    foot, off = led_over(fine, Distance(surface.net, options.thickness), options.tolerance)
+    ends, found = np.cumsum([len(points) for points, _ in lines])[:-1], []
+    for (points, own), feet, moved in zip(lines, np.split(foot, ends), np.split(off > 0.0, ends)):
+        kept = own | moved | np.roll(moved, 1) | np.roll(moved, -1)
+        found.append(np.where(moved[:, None], feet, points)[kept])
+    return Curves(found, float(off.max(initial=0.0)))
 
 
-def led_over(points: np.ndarray, distance: Distance, options: ToolSettings) -> tuple[np.ndarray, float]:
-    """Return a closed curve whose points off a surface are moved onto it, with further ones between these, and by how
-    much at most, mm."""
-    fine, own = divided(points, SPACING * options.thickness)
-    foot = distance.nearest(fine)[0]
-    off = np.linalg.norm(foot - fine, axis=1)
-    moved = off > options.tolerance
-    kept = own | moved | np.roll(moved, 1) | np.roll(moved, -1)
-    return np.where(moved[:, None], foot, fine)[kept], float(off[moved].max(initial=0.0))
+def led_over(points: np.ndarray, distance: Distance, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return points (n, 3), those farther from a surface than a tolerance moved onto it, and by how much, mm."""
+    foot, off = points.copy(), np.zeros(len(points))
+    far = np.flatnonzero(distance.upper_bound(points) > tolerance)
+    foot[far] = distance.nearest(points[far])[0]
+    off[far] = np.linalg.norm(foot[far] - points[far], axis=1)
+    off[off <= tolerance] = 0.0
+    return foot, off
 
 
 def divided(points: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray]:
