@@ -260,11 +260,14 @@ def friction_words(text):
 
 
 def test_friction_that_rises(program):
-    """A coefficient that rises with the speed is told to be outside of Stribeck's curve, whose factor ends at 1."""
+    """A coefficient that rises with the speed is outside of Stribeck's curve, whose factor ends at 1: the nearest one is
+    constant, by r = 1 or by a speed v0 far below the data with any r, which a note tells."""
     speed = np.array([1, 5, 15, 40, 80])
     write("mu.csv", speed, 0.1 * (1 + 0.005 * speed), heading="speed[mm/s] mu")
     text, _ = identified(program, "--friction", "stribeck", "--friction-data", "mu.csv", "--fix", "stribeck.n=1")
-    assert 0.99 < friction_words(text)[1]["stribeck"]["r"] <= 1 and "stribeck.r is at the end of its range" in text
+    found = [float(line.split()[4]) for line in text.splitlines() if line.startswith("# speed ")]
+    assert len(found) == 5 and np.ptp(found) < 1e-3
+    assert "stribeck.r is at the end of its range" in text or "the data determine 1 of 2 parameters" in text
 
 
 def test_friction(program):
