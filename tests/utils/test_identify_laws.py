@@ -260,8 +260,8 @@ def friction_words(text):
 
 
 def test_friction_that_rises(program):
-    """A coefficient that rises with the speed is outside of Stribeck's curve, whose factor ends at 1: the nearest one is
-    constant, by r = 1 or by a speed v0 far below the data with any r, which a note tells."""
+    """A coefficient that rises with the speed is outside of Stribeck's curve, whose factor ends at 1: the nearest one
+    is constant, by r = 1 or by a speed v0 far below the data with any r, which a note tells."""
     speed = np.array([1, 5, 15, 40, 80])
     write("mu.csv", speed, 0.1 * (1 + 0.005 * speed), heading="speed[mm/s] mu")
     text, _ = identified(program, "--friction", "stribeck", "--friction-data", "mu.csv", "--fix", "stribeck.n=1")
