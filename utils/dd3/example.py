@@ -17,7 +17,7 @@ from dd3.command import new_parser
 from dd3.errors import Problem
 
 MATERIALS = "materials"
-INCLUDES = "../materials/"  # in the input files that need them
+INCLUDES = "../materials"  # in the input files that need them
 
 
 def names(folder: Path) -> list[str]:
