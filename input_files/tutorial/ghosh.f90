@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> The power law of A. K. Ghosh (1977): Y = K (e0 + p)^n - C, Swift's law less a constant.
+!> The hardening law known as Ghosh's: Y = K (e0 + p)^n - C, Swift's law less a constant.
 module dd3_material_hardening_ghosh
   use dd3_base_kinds, only : wp
   use dd3_base_parameter, only : law_value_t, row, kind_real
@@ -27,7 +27,7 @@ contains
 
     description%name = "ghosh"
     description%title = "Y = K (e0 + p)^n - C"
-    description%source = "A. K. Ghosh, J. Eng. Mater. Technol. 99 (1977) 264-274"
+    description%source = "Swift's law less a constant, known as Ghosh's"
     allocate (description%rows, source=[ &
       row("K", kind_real, "MPa", "", "factor", 0.0_wp, lower_open=.true.), &
       row("e0", kind_real, "", "", "strain before the start", 1.0e-12_wp), &

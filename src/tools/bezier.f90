@@ -11,7 +11,7 @@ module dd3_tools_bezier
   implicit none
   private
   public :: patch_t, new_patch, evaluate, evaluate_relative, position_at, normal_at, unit_normal
-  public :: edge_points, largest_degree, n_sample
+  public :: edge_points, evaluate_tangents, largest_degree, n_sample
 
   !> Largest number of intervals in u and v of the grid of stored points.
   integer, parameter :: n_sample = 8

@@ -18,7 +18,7 @@
 !> Trans. Vis. Comput. Graph. 11 (2005) 243-253.
 module dd3_tools_hit
   use dd3_base_kinds, only : wp
-  use dd3_tools_bezier, only : patch_t, evaluate, normal_at, unit_normal
+  use dd3_tools_bezier, only : patch_t, evaluate, evaluate_tangents, normal_at, unit_normal
   use dd3_tools_projection, only : projection_t
   use dd3_tools_surface, only : surface_t, edge_number, edge_parameters
   implicit none
@@ -32,8 +32,8 @@ module dd3_tools_hit
   !> A node is beside the border or a sharp edge from this tangential distance on, relative to the
   !> surface's size.
   real(wp), parameter :: beside_border = 1.0e-6_wp, beside_sharp_edge = 1.0e-9_wp
-  !> Derivative of the position by a parameter that is round-off, over the surface's size.
-  real(wp), parameter :: round_off = 1.0e-12_wp
+  !> Distance from a pole, in the parameter that leads to it, below which it is the closest point.
+  real(wp), parameter :: at_pole = 1.0e-8_wp
   !> Smallest det A, relative to det a; below it the node is near the centre of curvature.
   real(wp), parameter :: smallest_determinant = 1.0e-8_wp
 
@@ -123,17 +123,20 @@ contains
     integer, intent(in) :: k
     type(projection_t), intent(in) :: projection
 
-    real(wp) :: tangential, length
+    real(wp) :: tangential
     integer :: a, e
 
     location = on_patch
+    do e = 1, 4
+      if (.not. is_at_pole(surface, k, e, projection)) cycle
+      if (beside_pole(surface, k, e, projection)) location = on_border
+      return
+    end do
     do a = 1, 2
       if (projection%active(a) == 0) cycle
       e = edge_number(a, projection%active(a) > 0)
-      if (surface%edge(e, k)%pole) cycle
-      length = norm2(projection%first(:, a))
-      if (length <= round_off*surface%size) cycle ! at a pole, without a direction
-      tangential = abs(dot_product(projection%offset, projection%first(:, a)))/length
+      tangential = abs(dot_product(projection%offset, projection%first(:, a))) &
+          /max(sqrt(dot_product(projection%first(:, a), projection%first(:, a))), tiny(1.0_wp))
       if (surface%edge(e, k)%patch == 0) then
         if (tangential > beside_border*surface%size) location = on_border
       else if (.not. surface%edge(e, k)%smooth) then
@@ -141,6 +144,48 @@ contains
       end if
     end do
   end function projection_location
+
+  !> Return whether an edge of a patch is a pole that is the closest point.
+  pure logical function is_at_pole(surface, k, e, projection)
+    type(surface_t), intent(in) :: surface
+    !> Numbers of the patch and of the edge.
+    integer, intent(in) :: k, e
+    type(projection_t), intent(in) :: projection
+
+    real(wp) :: uv(2)
+    integer :: a
+
+    a = merge(1, 2, e <= 2)
+    uv = edge_parameters(e, 0.0_wp)
+    is_at_pole = surface%edge(e, k)%pole .and. abs(projection%uv(a) - uv(a)) <= at_pole
+  end function is_at_pole
+
+  !> Return whether a node whose closest point is a pole is beside the surface: off its normal there,
+  !> where an open edge ends at the pole. The parameter along the pole and the directions of the
+  !> edges that end there are undetermined; the normal is that of two lines that lead to it.
+  pure logical function beside_pole(surface, k, pole, projection)
+    type(surface_t), intent(in) :: surface
+    !> Numbers of the patch and of its edge that is the pole.
+    integer, intent(in) :: k, pole
+    type(projection_t), intent(in) :: projection
+
+    integer, parameter :: ending(2, 4) = reshape([3, 4, 3, 4, 1, 2, 1, 2], [2, 4])
+    real(wp) :: uv(2), first(3, 2), line(3, 2), normal(3), lateral(3)
+    logical :: regular
+    integer :: i
+
+    beside_pole = .false.
+    if (all(surface%edge(ending(:, pole), k)%patch > 0)) return
+    do i = 1, 2
+      uv = edge_parameters(pole, (i - 1)/3.0_wp)
+      call evaluate_tangents(surface%patch(k), uv(1), uv(2), first)
+      line(:, i) = first(:, merge(1, 2, pole <= 2))
+    end do
+    call unit_normal(surface%patch(k), line, normal, regular)
+    if (.not. regular) return
+    lateral = projection%offset - dot_product(projection%offset, normal)*normal
+    beside_pole = norm2(lateral) > beside_border*surface%size
+  end function beside_pole
 
   !> Set gap, normal and its gradient on a smooth patch.
   pure subroutine set_patch_hit(hit, flat, normal, offset, first, second)
