@@ -42,7 +42,7 @@ def test_sample_has_rank_correlations() -> None:
 
 
 def test_deviation_of_a_sum_of_independent_inputs() -> None:
-    """Six inputs of 30 values: the deviation of their sum scatters by 0.04 of its value, and by 0.12 if the chance
+    """Six inputs of 30 values: the deviation of their sum scatters by 0.04 of its value, and by 0.15 if the chance
     correlations of the inputs, of about 1/sqrt(30), are left."""
     inputs = [distribution("normal", mean=0, deviation=1)] * 6
     found = np.array([latin_hypercube(inputs, 30, seed=seed).sum(axis=1).std(ddof=1) for seed in range(20)]) / np.sqrt(6)
