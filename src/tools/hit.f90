@@ -161,8 +161,8 @@ contains
   end function is_at_pole
 
   !> Return whether a node whose closest point is a pole is beside the surface: off its normal
-  !> there, where an open edge ends at the pole. The parameter along the pole and the directions of the
-  !> edges that end there are undetermined; the normal is that of two lines that lead to it.
+  !> there, where an open edge ends at the pole. The parameter along the pole and the directions of
+  !> the edges that end there are undetermined; the normal is that of two lines that lead to it.
   pure logical function beside_pole(surface, k, pole, projection)
     type(surface_t), intent(in) :: surface
     !> Numbers of the patch and of its edge that is the pole.
