@@ -177,7 +177,7 @@ contains
     beside_pole = .false.
     if (all(surface%edge(ending(:, pole), k)%patch > 0)) return
     do i = 1, 2
-      uv = edge_parameters(pole, (i - 1)/3.0_wp)
+      uv = edge_parameters(pole, real(i - 1, wp)/3.0_wp)
       call evaluate_tangents(surface%patch(k), uv(1), uv(2), first)
       line(:, i) = first(:, merge(1, 2, pole <= 2))
     end do
