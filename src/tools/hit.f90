@@ -313,6 +313,7 @@ contains
       if (projection%active(a) /= 0) cycle
       tangent = projection%first(:, a)
       square = dot_product(tangent, tangent)
+      if (square <= epsilon(square)*maxval(sum(projection%first**2, dim=1))) cycle ! along a pole
       stretch = max(square + dot_product(projection%offset, projection%second(:, a)), &
           smallest_determinant*square)
       along = max(0.0_wp, 1.0_wp + dot_product(radius, projection%second(:, a))/square)

@@ -95,7 +95,10 @@ def prepared(options):
                             ignore=shutil.ignore_patterns("*.out", "__pycache__"))
         else:
             shutil.copy(part, work / part.name)
-    if not own:
+    if own:
+        with open(work / "cmake" / "Dd3BuildTypes.cmake", "a", encoding="utf-8") as types:
+            types.write('set(CMAKE_Fortran_FLAGS_RELEASE_INIT "-O0")\n')  # builds in a third of the time
+    else:
         (work / "build" / "release").mkdir(parents=True)
         for name in ("dd3imp", "libdd3laws.so"):
             (work / "build" / "release" / name).symlink_to(pathlib.Path(options.program).resolve().parent / name)
