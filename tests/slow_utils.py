@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-#: {"name": "utils_slow_0", "arguments": ["--third", "0"], "labels": ["utils", "slow"], "timeout": 1800, "cost": 180}
-#: {"name": "utils_slow_1", "arguments": ["--third", "1"], "labels": ["utils", "slow"], "timeout": 1800, "cost": 280}
-#: {"name": "utils_slow_2", "arguments": ["--third", "2"], "labels": ["utils", "slow"], "timeout": 1800, "cost": 100}
+#: {"name": "utils_slow_0", "arguments": ["--first", "0"], "labels": ["utils", "slow"], "timeout": 1800, "cost": 130}
+#: {"name": "utils_slow_1", "arguments": ["--first", "1"], "labels": ["utils", "slow"], "timeout": 1800, "cost": 260}
+#: {"name": "utils_slow_2", "arguments": ["--first", "2"], "labels": ["utils", "slow"], "timeout": 1800, "cost": 50}
+#: {"name": "utils_slow_3", "arguments": ["--first", "3"], "labels": ["utils", "slow"], "timeout": 1800, "cost": 160}
+#: {"name": "utils_slow_4", "arguments": ["--first", "4"], "labels": ["utils", "slow"], "timeout": 1800, "cost": 100}
 """Tests of the Python package with the mark `slow`; the others are run by themselves, one for each file of utils.
 
-    slow_utils.py --program build/release/dd3imp --work build/slow_utils --third 0       every third file
+    slow_utils.py --program build/release/dd3imp --work build/slow_utils --first 0       every fifth file
 """
 import sys
 from pathlib import Path
@@ -14,13 +16,15 @@ import pytest
 
 from dd3.programs import parser_of_runs
 
+STEP = 5  # of the files
+
 
 def main():
     """Run them."""
     parser = parser_of_runs(__doc__)
-    parser.add_argument("--third", required=True, type=int, choices=(0, 1, 2), help="the first file of them")
+    parser.add_argument("--first", required=True, type=int, choices=range(STEP), help="the first file of them")
     options = parser.parse_args()
-    files = sorted(Path(__file__).parent.glob("utils/test_*.py"))[options.third::3]
+    files = sorted(Path(__file__).parent.glob("utils/test_*.py"))[options.first::STEP]
     sys.exit(pytest.main(["-q", "-rs", "-p", "no:cacheprovider", "-m", "slow", "--program", str(options.program),
                           "--basetemp", str(options.work / "pytest"), *map(str, files)]))
 

@@ -58,7 +58,7 @@ is_checkout() {
 }
 
 # Prints a pattern of the parts of the slow tests that are left out: all but the one that the hash of the commit chooses,
-# part_0 without git. case_file.py makes the parts; slow tests without one, such as build_from_source, always run.
+# part_0 without git. case_file.py makes the parts.
 parts_left_out() {
   local parts commit chosen i left=()
   parts=$(ctest --preset slow --print-labels | grep -c '^  part_')

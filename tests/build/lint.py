@@ -2,7 +2,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Check the sources by ruff, mypy, fortitude and codespell, which `utils/install_needed.sh --browser` installs.
 
-    lint.py            exit code 77, which ctest counts as skipped, where one of them is not installed
+    lint.py            all of them
+    lint.py mypy       some
+
+Exit code 77, which ctest counts as skipped, where one of them is not installed.
 """
 import subprocess
 import sys
@@ -15,13 +18,14 @@ SKIPPED = 77
 
 
 def main():
-    """Run all checks."""
+    """Run checks."""
+    chosen = [check for check in CHECKS if check[0] in (sys.argv[1:] or check)]
     folder = Path(sys.executable).parent
-    absent = [name for name, *_ in CHECKS if not (folder / name).is_file()]
+    absent = [name for name, *_ in chosen if not (folder / name).is_file()]
     if absent:
         print(f"not installed beside {sys.executable}: {' '.join(absent)}; utils/install_needed.sh --browser")
         sys.exit(SKIPPED)
-    failed = [name for name, *words in CHECKS
+    failed = [name for name, *words in chosen
               if subprocess.run([folder / name, *words], cwd=ROOT, check=False).returncode]
     if failed:
         sys.exit(f"failed: {' '.join(failed)}")

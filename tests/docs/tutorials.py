@@ -7,7 +7,7 @@
 #: {"name": "docs_tutorial_compensation", "arguments": ["compensation"], "labels": ["docs", "slow"], "timeout": 1200,
 #:  "cost": 40}
 #: {"name": "docs_tutorial_study", "arguments": ["study"], "labels": ["docs"], "timeout": 600}
-#: {"name": "docs_tutorial_own_law", "arguments": ["own_law"], "labels": ["docs", "slow"], "timeout": 5400, "cost": 300}
+#: {"name": "docs_tutorial_own_law", "arguments": ["own_law"], "labels": ["docs", "slow"], "timeout": 5400, "cost": 170}
 """Run the commands of a page of docs/tutorials; compare what they print, and the decimals of the text, with the page.
 
   tutorials.py import --program build/release/dd3imp --work build/tutorial_import [--write]

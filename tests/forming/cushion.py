@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-#: {"name": "forming_cushion", "timeout": 600}
+#: {"name": "forming_cushion", "labels": ["slow"], "timeout": 600, "cost": 35}
 """The tray on a cushion: equal pins, unequal pins, and distance blocks against the tilt.
 
     cushion.py --program build/release/dd3imp --work build/cushion

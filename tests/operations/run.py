@@ -1,9 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-#: {"name": "operations", "timeout": 900}
+#: {"name": "operations", "arguments": ["--only", "released", "carried", "refined", "cut_bend", "dynain", "restruck",
+#:  "refused"], "timeout": 900}
+#: {"name": "operations_more", "arguments": ["--only", "turned", "cut_wall", "cut_on_sheet", "cut_by_elements"],
+#:  "labels": ["case", "slow"], "timeout": 900, "cost": 50}
 """Operations after one another: the sheet of another run (*START), cuts (*TRIM), and what is refused.
 
-    run.py --program build/release/dd3imp --work build/operations [--only NAME]
+    run.py --program build/release/dd3imp --work build/operations [--only NAME ...]
 
 - released: a strip drawn in one run and released in another has the shape of the strip that one run draws and releases
   but for the friction of the tools that are withdrawn there, within 1 % of the springback; the same where it is moved and
@@ -385,12 +388,13 @@ TESTS = (released, turned, carried, refined, cut_wall, cut_bend, cut_on_sheet, c
 def main():
     """Call the tests."""
     parser = parser_of_runs(__doc__)
-    parser.add_argument("--only", choices=[test.__name__ for test in TESTS])
+    names = [test.__name__ for test in TESTS]
+    parser.add_argument("--only", nargs="+", choices=names, default=names)
     options = parser.parse_args()
     shutil.rmtree(options.work, ignore_errors=True)
     bench = Bench(options.program, options.work)
     for test in TESTS:
-        if options.only in (None, test.__name__):
+        if test.__name__ in options.only:
             print(f"== {test.__name__}", flush=True)
             test(bench)
 

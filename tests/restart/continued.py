@@ -240,8 +240,9 @@ def main():
         return lambda: test(runner, fresh(work / "_".join([test.__name__, *arguments[:1]])), *arguments)
 
     tests = [(f"from increments, {name}", call(from_increments, name, options.every))
-             for name in ("each", "solid_shell", "motions", "bead", "tilt", "fallback", "increments")]
-    tests += [("from increments, laws", call(from_increments, "laws", 3 * options.every))]
+             for name in ("each", "motions", "bead", "tilt", "fallback", "increments")]
+    tests += [(f"from increments, {name}", call(from_increments, name, 3 * options.every))
+              for name in ("solid_shell", "laws")]
     tests += [(test.__doc__.split(":")[0].rstrip("."), call(test))
               for test in (interrupted, stopped, changed, other_ways, small_disk)]
     raise SystemExit(call_tests(tests))

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-#: {"name": "springback_symmetric_rail", "timeout": 600, "cost": 20}
+#: {"name": "springback_symmetric_rail", "labels": ["case", "slow"], "timeout": 600, "cost": 45}
 """The free shape of a drawn rail has the centre of symmetry of its blank and its tools.
 
     symmetric_rail.py --program build/release/dd3imp --work build/symmetric_rail

@@ -210,6 +210,7 @@ def test_mutants(tmp_path, capfd, name, text):
             assert name in str(problem)
 
 
+@pytest.mark.slow
 def test_mutants_of_cad(tmp_path):
     """Check that the account of a damaged STEP or IGES file ends in nothing but a Problem."""
     step_and_iges(tmp_path)

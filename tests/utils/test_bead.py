@@ -95,7 +95,7 @@ def test_free_part():
     assert span.near == pytest.approx((first + rise * (length - 2) + tension * offset) / stiffness, rel=1e-3)
 
 
-@pytest.mark.parametrize("height", (1.0, 5.0, 10.0))
+@pytest.mark.parametrize("height", (1.0, 5.0, pytest.param(10.0, marks=pytest.mark.slow)))
 def test_path(height):
     """Check that the free parts are tangential to the tools and nowhere in them, and that a low bead does not bend the
     sheet as much as its tools."""
@@ -117,6 +117,7 @@ def test_path(height):
     assert (path.curvatures[0] * strip.radii[0] < 0.1) == (height == 1.0)
 
 
+@pytest.mark.slow
 def test_elastic():
     """Check that an elastic sheet passes free."""
     bead = Bead(1.0, 5.0, 4.0, 1.5, 5.0, 0.1)

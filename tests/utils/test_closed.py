@@ -26,6 +26,8 @@ from dd3.tools.cut import is_closed, of_axes, planes_through
 from dd3.tools.division import Division
 from dd3.tools.patch_distance import Distance
 
+SLOW = ("slotted", "folded_cover")  # of the pairs
+
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
@@ -35,7 +37,7 @@ def folder(tmp_path_factory):
     return folder
 
 
-@pytest.mark.parametrize("name", PAIRS)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.slow if name in SLOW else ()) for name in PAIRS])
 def test_side(folder, name):
     """Check that the upper side is that of the part without openings."""
     reading, closed, area, rims = upper(folder, name)
@@ -134,7 +136,7 @@ def relieved_cover(kind):
     occ.cut(body, cuts)
 
 
-@pytest.mark.parametrize(("kind", "radius"), [("round", "2 and 3"), ("square", "4 and 5"), ("slot", "4 and 5")])
+@pytest.mark.parametrize(("kind", "radius"), [("round", "2 and 3"), ("square", "4 and 5"), pytest.param("slot", "4 and 5", marks=pytest.mark.slow)])
 def test_reliefs(tmp_path, kind, radius):
     """Check that open corners with reliefs are listed, and closed in the tools."""
     path = tmp_path / "cover.step"

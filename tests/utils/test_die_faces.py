@@ -207,6 +207,7 @@ def test_large_flange(monkeypatch):
     assert off > 0.5 and sum(sizes) < 10 * len(x)
 
 
+@pytest.mark.slow
 def test_choices(folder, tmp_path):
     """Check a least radius for sharp edges, the lower side, the width of the holder, and refusals."""
     said = call("tool", folder / "sharp_tray.step", tmp_path / "round", "--radius", 3)

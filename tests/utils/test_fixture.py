@@ -132,6 +132,7 @@ def test_arc_clamped_flat(program, tmp_path, orders):
     assert tables["points"]["deviation"][0] == pytest.approx(-off, rel=0.02)
 
 
+@pytest.mark.slow
 def test_rail_in_two_orders(program, tmp_path):
     """The clamps of a rail that twists close in either order: the same shape and forces at the end. In between, the
     displacement at one by the force of the other is reciprocal (Maxwell 1864), and both forces follow by superposition:

@@ -168,6 +168,7 @@ def test_derivatives(m):
         assert np.abs(change - matrix[:, column]).max() < 0.01 * np.abs(matrix).max()
 
 
+@pytest.mark.slow
 def test_calibration():
     """Check that the calibration finds f0 of a limit, and refuses one above that of a perfect sheet."""
     sheet = Sheet(material(), 0.99)
