@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-#: {"name": "restart_continued", "arguments": ["--every", "8"], "timeout": 600}
+#: {"name": "restart_continued", "arguments": ["--every", "20"], "timeout": 600}
 #: {"name": "restart_continued_often", "arguments": ["--every", "2"], "labels": ["case", "slow"],
 #:  "timeout": 3600, "cost": 300}
 """Runs continued from a restart file: after an interruption or a stop, from every increment, with changed input.
