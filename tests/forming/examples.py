@@ -144,7 +144,7 @@ def row_of(name, mesh, result, fine):
     else:
         words += ["", ""]
     if result.found:
-        largest, turned = result.found.distance().max(), twist(result.sheet, result.found, result.mirror)
+        largest, turned = result.found.distance().max(), twist(result.sheet, result.found)
         words += [f"{largest:.3f}", f"{100*(largest/other.found.distance().max() - 1):+.1f}" if other else "",
                   f"{result.distance_to(other):.3f}" if other else "", f"{turned[1]:.2f}" if turned else ""]
     else:

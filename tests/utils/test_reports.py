@@ -16,7 +16,7 @@ from dd3.errors import Problem
 from dd3.forming_limit_curve import ZONES, Curve, keeler_brazier, read_curve
 from dd3.report.course import action
 from dd3.sheet import Sheet
-from dd3.springback import find, opening, rotation, twist
+from dd3.springback import best_fit, find, opening, rotation, symmetry, twist
 from dd3.surface_strain import cell_strains
 
 # Parts of the profile: length along it and turn. The wall is an arc of radius 100 mm.
@@ -327,6 +327,24 @@ def twisted(x, y, z, rate=math.radians(0.05)):
     return place @ np.array([[0.8, 0.6, 0], [-0.6, 0.8, 0], [0, 0, 1]]) + [3, -1, 7]
 
 
+def test_symmetry():
+    """Check that planes which hold the border of a sheet are found, and not those in its middle or where it moves off;
+    and that the best fit keeps a bent half on its plane."""
+    start = np.stack(np.meshgrid(np.linspace(0, 40, 41), np.linspace(-3, 3, 7), [0.0, 1.0], indexing="ij"),
+                     axis=-1).reshape(-1, 3)
+    bent = start + np.outer(2e-3 * start[:, 0]**2, [-0.1, 0, 1])
+    assert symmetry(start, bent) == ["x"]
+    assert symmetry(start, bent, bent + [0.1, 0, 0]) == [] and symmetry(start - [20, 0, 0], bent - [20, 0, 0]) == []
+    assert symmetry(-start, -bent) == ["x"] and symmetry(start, start) == []
+    assert symmetry(start + [0, 3, 0], bent + [0, 3, 0]) == ["x"]  # no node moves along y
+    free = best_fit(bent, start, ["x"])
+    assert np.abs(free[start[:, 0] == 0, 0]).max() < 1e-9
+    # Of a parabola: its height less the mean height.
+    rise = 2e-3 * start[:, 0]**2
+    assert np.abs(free[:, 2] - start[:, 2] - rise + rise.mean()).max() < 1e-9
+    assert np.linalg.norm(best_fit(bent, start) - start, axis=1).max() < 0.4 * np.linalg.norm(free - start, axis=1).max()
+
+
 def test_springback(tmp_path):
     """Check the distance, the rotations and the twist of a bar that is twisted in its release."""
     start, free = bar(twisted)
@@ -341,7 +359,7 @@ def test_springback(tmp_path):
                        phases=[DRAW, RELEASED])
     sheet = Sheet(folder)
     found = find(sheet, [DRAW, RELEASED])
-    assert found and found.step == 0
+    assert found and found.step == 0 and found.mirror == []
     radius, angle = np.hypot(start[:, 1], start[:, 2]), np.radians(0.05) * np.abs(start[:, 0])
     assert np.abs(found.distance() - 2 * radius * np.sin(angle / 2)).max() < 2e-3
     axis, degrees = twist(sheet, found)
@@ -355,4 +373,4 @@ def test_springback(tmp_path):
     assert rows["mean distance"] == f"{distance.mean():.4g} mm"
     assert rows["twist about x from 10 to 90 % of the length"] == "+1.6 degrees"
     assert rows["section x=10"].startswith("turned by +0.5 degrees; its ends against that by "), rows
-    assert find(sheet, [DRAW, {**RELEASED, "tools": [PUNCH]}]) is None and twist(sheet, found, ["x"]) is None
+    assert find(sheet, [DRAW, {**RELEASED, "tools": [PUNCH]}]) is None and twist(sheet, found._replace(mirror=["x"])) is None

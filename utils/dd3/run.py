@@ -132,7 +132,8 @@ class Run:
 
     def springback(self, mirror: Sequence[str] = ()) -> "Springback | None":
         """Return the drawn and the free shape after the best fit, with the distance of each node; None where the last
-        phase does not release all tools. mirror: planes of symmetry of the model, such as "xy"."""
+        phase does not release all tools. mirror: planes of symmetry of the model, such as "xy", beside those on which
+        it keeps the border of the sheet."""
         from dd3.sheet import Sheet
         from dd3.springback import find
         return find(Sheet(self.folder), self.job["phases"], planes_of(mirror))

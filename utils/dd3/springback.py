@@ -8,7 +8,7 @@ import numpy as np
 
 from dd3.alignment import kabsch
 from dd3.section import in_plane
-from dd3.sheet import AXES, Line, Sheet, length
+from dd3.sheet import AXES, SHIFT, Line, Sheet, length
 
 ENDS = 0.1, 0.9  # places along the sheet at which the rotations are compared, over its length
 
@@ -16,12 +16,14 @@ ENDS = 0.1, 0.9  # places along the sheet at which the rotations are compared, o
 class Springback(NamedTuple):
     """The drawn and the free shape, the latter moved to the best fit.
 
-    drawn, free: positions of the nodes of the drawn mesh, mm. step: number of the step of the drawn shape.
+    drawn, free: positions of the nodes of the drawn mesh, mm. step: number of the step of the drawn shape. mirror:
+    planes of symmetry on which the fit keeps the sheet.
     """
 
     drawn: np.ndarray
     free: np.ndarray
     step: int
+    mirror: Sequence[str] = ()
 
     def distance(self) -> np.ndarray:
         """Return the distance of each node from its place in the drawn shape, mm."""
@@ -49,6 +51,34 @@ def best_fit(points: np.ndarray, target: np.ndarray, mirror: Sequence[str] = (),
     return kabsch(whole, goal, np.tile(part, len(whole) // len(points))).of(points)
 
 
+def symmetry(start: np.ndarray, *shapes: np.ndarray) -> list[str]:
+    """Return the axes of the planes x, y, z = 0 that bound the sheet at the start and hold its nodes there in other
+    shapes too: planes of symmetry of the model. Without that along which no node moves, as in plane strain. Positions
+    of nodes, mm."""
+    near = SHIFT * np.ptp(start, axis=0).max()
+    found = []
+    for axis, own, *others in zip(AXES, start.T, *(shape.T for shape in shapes)):
+        on = np.abs(own) <= near
+        bounds = on.any() and (own.min() >= -near or own.max() <= near)
+        if bounds and all(np.abs(other[on]).max() <= near for other in others) \
+                and any(np.abs(other - own).max() > near for other in others):
+            found.append(axis)
+    return found
+
+
+def unnamed(sheet: Sheet, step: int, mirror: Sequence[str]) -> str:
+    """Return the planes of symmetry that are named and those on which the model keeps the sheet, as words in quotes,
+    where one of the latter is not named; nothing else."""
+    planes = sorted({*mirror, *symmetry(sheet.start(step), sheet.points(step))})
+    return "" if planes == sorted(set(mirror)) else ", ".join(f'"{axis}"' for axis in planes)
+
+
+def kept(mirror: Sequence[str]) -> str:
+    """Return words on the planes of symmetry on which a best fit keeps the sheet; none without."""
+    planes = ", ".join(f"{axis} = 0" for axis in mirror)
+    return planes and f", on the plane{'s' if len(mirror) > 1 else ''} of symmetry {planes}"
+
+
 def steps_with_tools(sheet: Sheet, phases: Sequence[dict]) -> np.ndarray:
     """Return the steps of the phases in which tools act; phases: those of run.json."""
     of_step = sheet.file["job"].get("phase")
@@ -61,14 +91,15 @@ def steps_with_tools(sheet: Sheet, phases: Sequence[dict]) -> np.ndarray:
 def find(sheet: Sheet, phases: Sequence[dict], mirror: Sequence[str] = ()) -> Springback | None:
     """Return the springback of a run whose last phase releases all tools; None for another one.
 
-    phases: those of run.json.
+    phases: those of run.json. mirror: planes of symmetry of the model beside those on which its supports keep it.
     """
     drawn = steps_with_tools(sheet, phases)
     if not drawn.size or drawn[-1] == sheet.count - 1:
         return None
     step = int(drawn[-1])
     points, free = sheet.points(step), sheet.points(sheet.last)[sheet.nodes_in(step, sheet.last)]
-    return Springback(points, best_fit(free, points, mirror, sheet.areas(step)), step)
+    planes = sorted({*mirror, *symmetry(sheet.start(step), points, free)})
+    return Springback(points, best_fit(free, points, planes, sheet.areas(step)), step, planes)
 
 
 def rotation(line: Line, found: Springback, normal: np.ndarray) -> float:
@@ -93,13 +124,13 @@ def opening(line: Line, found: Springback, normal: np.ndarray) -> tuple[float, f
     return changes[0], changes[1]
 
 
-def twist(sheet: Sheet, found: Springback, mirror: Sequence[str] = ()) -> tuple[str, float] | None:
+def twist(sheet: Sheet, found: Springback) -> tuple[str, float] | None:
     """Return the axis along the sheet and the rotation of one end about it against the other, degrees; None where
     symmetry prevents it."""
     start = sheet.start(found.step)
     sizes = np.ptp(start, axis=0)
     axis = int(sizes.argmax())
-    if mirror:
+    if found.mirror:
         return None
     turned = []
     for part in ENDS:

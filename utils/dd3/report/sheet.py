@@ -146,15 +146,16 @@ def add_springback(report: Report) -> None:
     axes.set_aspect("equal", adjustable="datalim")
     axes.grid(True, color="0.9")
     axes.legend(frameon=False)
-    twisted = springback.twist(report.sheet, found, report.mirror)
+    twisted = springback.twist(report.sheet, found)
     if twisted:
         rows.append((f"twist about {twisted[0]} from 10 to 90 % of the length", f"{twisted[1]:+.3g} degrees"))
     distance = found.distance()
     report.sprung = float(distance.max())
     rows.insert(0, ("largest distance from the drawn shape", f"{distance.max():.4g} mm"))
     rows.insert(1, ("mean distance", f"{distance.mean():.4g} mm"))
-    report.add("Springback", "<p>The free shape, moved to the best fit with the drawn one.</p>"
-               + distance_map(report, found) + report.figure("springback", figure, "sections, drawn and free")
+    report.add("Springback", "<p>The free shape, moved to the best fit with the drawn one"
+               f"{springback.kept(found.mirror)}.</p>" + distance_map(report, found)
+               + report.figure("springback", figure, "sections, drawn and free")
                + table(rows))
 
 

@@ -41,7 +41,7 @@ from dd3.command import new_parser
 from dd3.errors import Problem
 from dd3.plot.figures import new_figure, save
 from dd3.programs import add_program, find_program, made_folder
-from dd3.scatter.results import FORMING_LIMIT, draw, profiles, scalar
+from dd3.scatter.results import FORMING_LIMIT, SPRINGBACK, draw, fit_of, profiles, scalar
 from dd3.scatter.sample import coil_rows, distribution, latin_hypercube, read_coils
 from dd3.scatter.statistics import bands, failure
 from dd3.scatter.surrogate import fit
@@ -202,6 +202,8 @@ def main(words: Sequence[str] | None = None) -> None:
     ended = [case for case in cases if case.state == "reached"]
     if len(ended) > 1:
         print("\n".join(describe(scatter, sample, cases)))
+        if any(name.startswith(SPRINGBACK) for name in (*scatter.results, *scatter.bands)):
+            print(fit_of(ended[0].folder, scatter.mirror))
         if scatter.bands:
             write_bands(scatter, [case.folder for case in ended], work)
     lost = [case for case in cases if case.state != "reached"]

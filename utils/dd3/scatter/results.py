@@ -44,6 +44,12 @@ def field_map(run: Path, field: str, mirror: Sequence[str]) -> Map:
     return Map(sheet, found.step, found.distance(), f"{SPRINGBACK} (mm)")
 
 
+def fit_of(run: Path, mirror: Sequence[str]) -> str:
+    """Return words on the best fit of the springback of a run."""
+    found = springback.find(Sheet(run), read_job(run)["phases"], mirror)
+    return f"{SPRINGBACK}: distance after the best fit{springback.kept(found.mirror) if found else ''}"
+
+
 def at_point(field: Map, place: Sequence[float]) -> float:
     """Return a field at a point (x, y) of the blank before the run."""
     nodes = np.unique(field.sheet.faces(True, field.step))
