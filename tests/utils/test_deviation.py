@@ -4,7 +4,10 @@
 import numpy as np
 import pandas as pd
 import pytest
+import pyvista
 from helpers import call, write_run
+
+from dd3.nominal import line_distances
 
 HISTORY = "increment,phase,travel,progress,punch_ux,punch_uy,punch_uz\n0,draw,0,1,0,0,0\n1,free,2,1,0,0,0\n"
 TOOL = {"name": "punch", "active": True}
@@ -117,6 +120,17 @@ def test_best_fit_and_section(tmp_path):
     expected = -c * ((table["x"] - 20)**2 - 20**2 / 3)
     assert np.allclose(table["deviation"], expected, atol=5e-5)
     assert (tmp_path / "run" / "deviation" / "map.png").is_file()
+
+
+def test_lines_on_the_border():
+    """Check that lines on the border of a surface meet it, also by round-off beside it, and others do not."""
+    surface = pyvista.Plane(center=(30, 0.5, 0), i_size=60, j_size=1, i_resolution=30, j_resolution=1).triangulate()
+    surface = surface.compute_normals()
+    for beside, meets in ((8e-16, True), (0.0, True), (1e-3, False)):
+        points = np.array([[59.5, -beside, -2], [59.5, 1 + beside, -2], [-beside, 0.4, -2], [60 + 5 * beside, 0.4, -2],
+                           [60 + 5 * beside, 1 + beside, -2]])
+        away, _ = line_distances(points, np.tile([0.0, 0, 1], (len(points), 1)), surface)
+        assert np.array_equal(away == 2, np.full(len(points), meets)), (beside, away)
 
 
 def test_points_as_alignment(tmp_path):

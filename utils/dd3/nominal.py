@@ -130,10 +130,13 @@ def cells_along(surface: Any, points: np.ndarray, directions: np.ndarray) -> Ite
     locator, found = vtkStaticCellLocator(), vtkIdList()
     locator.SetDataSet(surface)
     locator.BuildLocator()
-    middle = np.array(surface.center)
+    middle, near = np.array(surface.center), SAME * surface.length
     for point, direction in zip(points, directions):
-        start = point + ((middle - point) @ direction - surface.length) * direction
-        locator.FindCellsAlongLine(start, start + 2 * surface.length * direction, SAME * surface.length, found)
+        along = (middle - point) @ direction
+        inwards = middle - point - along * direction
+        # The locator leaves out lines that pass beside its box by round-off: they are moved half the tolerance inwards.
+        start = point + (along - surface.length) * direction + 0.5 * near * inwards / max(np.linalg.norm(inwards), near)
+        locator.FindCellsAlongLine(start, start + 2 * surface.length * direction, near, found)
         yield np.array([found.GetId(k) for k in range(found.GetNumberOfIds())], int)
 
 
