@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-#: {"name": "forming_bracket_line", "labels": ["slow"], "timeout": 1200, "cost": 180}
+#: {"name": "forming_bracket_line", "labels": ["slow"], "timeout": 1200, "cost": 300}
 """The line of the bracket: drawn, trimmed and pierced, tipped and flanged by a steel on the ram and by a cam.
 
     bracket_line.py --program build/release/dd3imp --work build/bracket_line

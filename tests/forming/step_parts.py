@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 #: {"name": "forming_step_rail", "arguments": ["rail"], "labels": ["slow"], "timeout": 1800, "cost": 150}
 #: {"name": "forming_step_cup", "arguments": ["cup"], "labels": ["slow"], "timeout": 1800, "cost": 150}
-#: {"name": "forming_step_panel", "arguments": ["panel"], "labels": ["slow"], "timeout": 1800, "cost": 150}
+#: {"name": "forming_step_panel", "arguments": ["panel"], "labels": ["slow"], "timeout": 1800, "cost": 200}
 """Draw parts that are given by STEP files alone: tools and input file by dd3 tool, then the run to its end.
 
   step_parts.py cup panel rail --program build/release/dd3imp --work build/step_parts [--defaults]
