@@ -3,8 +3,8 @@
 #: {"name": "utils_slow_0", "arguments": ["--first", "0"], "labels": ["utils", "slow"], "timeout": 1800, "cost": 130}
 #: {"name": "utils_slow_1", "arguments": ["--first", "1"], "labels": ["utils", "slow"], "timeout": 1800, "cost": 260}
 #: {"name": "utils_slow_2", "arguments": ["--first", "2"], "labels": ["utils", "slow"], "timeout": 1800, "cost": 50}
-#: {"name": "utils_slow_3", "arguments": ["--first", "3"], "labels": ["utils", "slow"], "timeout": 1800, "cost": 160}
-#: {"name": "utils_slow_4", "arguments": ["--first", "4"], "labels": ["utils", "slow"], "timeout": 1800, "cost": 100}
+#: {"name": "utils_slow_3", "arguments": ["--first", "3"], "labels": ["utils", "slow"], "timeout": 1800, "cost": 170}
+#: {"name": "utils_slow_4", "arguments": ["--first", "4"], "labels": ["utils", "slow"], "timeout": 1800, "cost": 130}
 """Tests of the Python package with the mark `slow`; the others are run by themselves, one for each file of utils.
 
     slow_utils.py --program build/release/dd3imp --work build/slow_utils --first 0       every fifth file

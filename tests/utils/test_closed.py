@@ -26,7 +26,7 @@ from dd3.tools.cut import is_closed, of_axes, planes_through
 from dd3.tools.division import Division
 from dd3.tools.patch_distance import Distance
 
-SLOW = ("slotted", "folded_cover")  # of the pairs
+SLOW = ("slotted", "folded_cover", "notched_flange", "collar", "whole_bend")  # of the pairs
 
 
 @pytest.fixture(scope="module")
@@ -136,7 +136,8 @@ def relieved_cover(kind):
     occ.cut(body, cuts)
 
 
-@pytest.mark.parametrize(("kind", "radius"), [("round", "2 and 3"), ("square", "4 and 5"), pytest.param("slot", "4 and 5", marks=pytest.mark.slow)])
+@pytest.mark.parametrize(("kind", "radius"), [
+    ("round", "2 and 3"), *(pytest.param(kind, "4 and 5", marks=pytest.mark.slow) for kind in ("square", "slot"))])
 def test_reliefs(tmp_path, kind, radius):
     """Check that open corners with reliefs are listed, and closed in the tools."""
     path = tmp_path / "cover.step"

@@ -264,8 +264,8 @@ class Compensation:
         sheet = Sheet(self.process.operations[-1].folder)
         planes = unnamed(sheet, sheet.last, mirror)
         if planes:
-            LOG.warning("warning: the model keeps the border of the sheet on a plane of symmetry, from which the best "
-                        "fit may turn it; expected --mirror " + planes.replace('"', "").replace(",", ""))
+            LOG.warning("the model keeps the border of the sheet on a plane of symmetry, from which the best "
+                        f"fit may turn it; expected --mirror {' '.join(planes)}")
 
     def measure(self) -> list[Region]:
         """Measure the part and add the loop; return what the operations form of it."""

@@ -13,6 +13,7 @@ compared where it lies, and supports.csv has the forces of locators and clamps. 
 deviation is outside its tolerance.
 """
 
+import json
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -382,8 +383,8 @@ def tell_symmetry(fixture: Fixture, sheet: Sheet, step: int) -> None:
     """Warn of planes of symmetry of the model that the fixture does not name."""
     planes = unnamed(sheet, step, fixture.mirror)
     if planes:
-        LOG.warning(f"{fixture.path}: warning: the model keeps the border of the sheet on a plane of symmetry, from "
-                    f"which the alignment may turn it; expected mirror = [{planes}]")
+        LOG.warning(f"{fixture.path}: the model keeps the border of the sheet on a plane of symmetry, from "
+                    f"which the alignment may turn it; expected mirror = {json.dumps(planes)}")
 
 
 def said(fixture: Fixture, found: Deviations, in_fixture: bool) -> list[str]:

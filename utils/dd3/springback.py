@@ -66,11 +66,11 @@ def symmetry(start: np.ndarray, *shapes: np.ndarray) -> list[str]:
     return found
 
 
-def unnamed(sheet: Sheet, step: int, mirror: Sequence[str]) -> str:
-    """Return the planes of symmetry that are named and those on which the model keeps the sheet, as words in quotes,
-    where one of the latter is not named; nothing else."""
+def unnamed(sheet: Sheet, step: int, mirror: Sequence[str]) -> list[str]:
+    """Return the planes of symmetry that are named and those on which the model keeps the sheet, where one of the
+    latter is not named; else none."""
     planes = sorted({*mirror, *symmetry(sheet.start(step), sheet.points(step))})
-    return "" if planes == sorted(set(mirror)) else ", ".join(f'"{axis}"' for axis in planes)
+    return [] if planes == sorted(set(mirror)) else planes
 
 
 def kept(mirror: Sequence[str]) -> str:

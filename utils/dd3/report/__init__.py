@@ -52,6 +52,7 @@ from dd3.report.sheet import (
     add_view,
 )
 from dd3.sheet import AXES
+from dd3.springback import unnamed
 from dd3.viewer import page as interactive
 
 
@@ -59,6 +60,9 @@ def page(report: Report) -> str:
     """Return the text of the page."""
     title = html.escape(report.job["title"] or report.folder.resolve().name)
     images_of = f"; completed at the planes {', '.join(report.mirror)} = 0" if report.mirror else ""
+    planes = unnamed(report.sheet, report.last, report.mirror)
+    if planes:
+        images_of += f"; forces are those of a part of the whole, which --mirror {' '.join(planes)} completes"
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{title}</title><style>{STYLE}{interactive.own_file("viewer.css")}</style></head><body><main>
