@@ -7,6 +7,7 @@
 
 Exit code 77, which ctest counts as skipped, where one of them is not installed.
 """
+import argparse
 import subprocess
 import sys
 from pathlib import Path
@@ -19,7 +20,13 @@ SKIPPED = 77
 
 def main():
     """Run checks."""
-    chosen = [check for check in CHECKS if check[0] in (sys.argv[1:] or check)]
+    names = [name for name, *_ in CHECKS]
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("checks", nargs="*", help=f"of {', '.join(names)}; all by default")
+    checks = parser.parse_args().checks or names
+    if not set(checks) <= set(names):
+        parser.error(f"expected some of {', '.join(names)}, got {' '.join(checks)}")
+    chosen = [check for check in CHECKS if check[0] in checks]
     folder = Path(sys.executable).parent
     absent = [name for name, *_ in chosen if not (folder / name).is_file()]
     if absent:

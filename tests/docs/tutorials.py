@@ -97,7 +97,7 @@ def prepared(options):
             shutil.copy(part, work / part.name)
     if own:
         with open(work / "cmake" / "Dd3BuildTypes.cmake", "a", encoding="utf-8") as types:
-            types.write('set(CMAKE_Fortran_FLAGS_RELEASE_INIT "-O0")\n')  # builds in a third of the time
+            types.write('set(CMAKE_Fortran_FLAGS_RELEASE_INIT "-O0")\n')  # it takes half the time
     else:
         (work / "build" / "release").mkdir(parents=True)
         for name in ("dd3imp", "libdd3laws.so"):

@@ -58,7 +58,7 @@ from dd3.process import (
 from dd3.programs import find_program, made_folder
 from dd3.run import read_frame, read_job
 from dd3.sheet import AXES, Sheet
-from dd3.springback import steps_with_tools, unnamed
+from dd3.springback import steps_with_tools, tell_symmetry
 from dd3.tools.surface import write
 
 BAND = 1.0  # sheet beside a region by which this is placed, over the length of the means: standard deviation
@@ -242,7 +242,8 @@ class Compensation:
         chosen_operations(program, process, names)
         run_process(program, process, threads)
         stages = stages_of(process)
-        self.tell_symmetry(mirror)
+        last = Sheet(process.operations[-1].folder)
+        tell_symmetry(last, last.last, mirror, "the best fit may turn the part", "--mirror")
         self.thickness = max(stages[0].job["sheet"]["thickness"])
         self.length = size or 5 * self.thickness
         self.wanted = wanted_shape(stages, BAND * self.length, hold=hold)
@@ -258,14 +259,6 @@ class Compensation:
         self.tools = {correction.name: {Path(tool["patches"]).name: Path(tool["patches"])
                                         for tool in correction.stage.job["tools"]} for correction in self.corrections}
         self.found: list[Loop] = []
-
-    def tell_symmetry(self, mirror: Sequence[str]) -> None:
-        """Warn of planes of symmetry of the last operation that --mirror does not name."""
-        sheet = Sheet(self.process.operations[-1].folder)
-        planes = unnamed(sheet, sheet.last, mirror)
-        if planes:
-            LOG.warning("the model keeps the border of the sheet on a plane of symmetry, from which the best "
-                        f"fit may turn it; expected --mirror {' '.join(planes)}")
 
     def measure(self) -> list[Region]:
         """Measure the part and add the loop; return what the operations form of it."""

@@ -13,7 +13,6 @@ compared where it lies, and supports.csv has the forces of locators and clamps. 
 deviation is outside its tolerance.
 """
 
-import json
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -40,7 +39,7 @@ from dd3.nominal import (
 from dd3.programs import made_folder
 from dd3.run import read_frame, read_job
 from dd3.sheet import AXES, LOWER, UPPER, Sheet, length, plane
-from dd3.springback import best_fit, steps_with_tools, unnamed
+from dd3.springback import best_fit, steps_with_tools, tell_symmetry
 
 BORDER = 0.25  # largest distance beside the border of the nominal shape at which a node is compared, over the thickness
 FAR = 5.0  # largest distance of a place of the file from the nominal shape, mm
@@ -112,7 +111,7 @@ class Comparison:
         self.nominal = turned_to(surface, self.part.surface)
         self.weights = sheet.areas(step)[self.part.nodes]
         if fixture.alignment != NONE:
-            tell_symmetry(fixture, sheet, step)
+            tell_symmetry(sheet, step, fixture.mirror, f"{fixture.path}: the alignment may turn the part", "mirror")
         self.motion, self.determined = STILL, 0
         self.supports = [*fixture.locators, *fixture.clamps]
         self.at = self.on_nominal(self.supports)
@@ -377,14 +376,6 @@ def write(found: Deviations, fixture: Fixture, folder: Path) -> None:
     if len(found.sections):
         deviation_pictures.draw_sections(found, fixture, folder / "sections.png")
     deviation_pictures.draw_map(found, fixture, folder / "map.png")
-
-
-def tell_symmetry(fixture: Fixture, sheet: Sheet, step: int) -> None:
-    """Warn of planes of symmetry of the model that the fixture does not name."""
-    planes = unnamed(sheet, step, fixture.mirror)
-    if planes:
-        LOG.warning(f"{fixture.path}: the model keeps the border of the sheet on a plane of symmetry, from "
-                    f"which the alignment may turn it; expected mirror = {json.dumps(planes)}")
 
 
 def said(fixture: Fixture, found: Deviations, in_fixture: bool) -> list[str]:

@@ -31,13 +31,13 @@ import numpy as np
 import pandas as pd
 
 from dd3.command import new_parser
-from dd3.errors import LOG, Problem
+from dd3.errors import Problem
 from dd3.plot.figures import new_figure, save
 from dd3.plot.force import controlling_tool, main_phase, vector
 from dd3.programs import made_folder
 from dd3.run import read_frame, read_job
 from dd3.sheet import Sheet
-from dd3.springback import unnamed
+from dd3.springback import tell_symmetry
 from dd3.tables import tools_in
 
 HALVINGS = 60  # of the angle, which leave less than the round-off
@@ -251,16 +251,6 @@ def options_of(words: Sequence[str] | None) -> argparse.Namespace:
     return options
 
 
-def tell_symmetry(run: Path, mirror: Sequence[str]) -> None:
-    """Warn of planes of symmetry of the model that --mirror does not name."""
-    if (run / "fields.vtkhdf").is_file():
-        sheet = Sheet(run)
-        planes = unnamed(sheet, sheet.last, mirror)
-        if planes:
-            LOG.warning("forces and energy are those of a part of the whole at planes of symmetry; expected "
-                        f"--mirror {' '.join(planes)}, or --whole")
-
-
 def main(words: Sequence[str] | None = None) -> None:
     """Compare the run of the command line with its press."""
     options = options_of(words)
@@ -274,8 +264,10 @@ def main(words: Sequence[str] | None = None) -> None:
         if tool not in tools_in(history):
             raise Problem(f"no tool '{tool}'; there are: {', '.join(tools_in(history))}")
     cams = cams_of(options.run, history, tools) if options.cams is None else options.cams
-    if options.whole == 1:
-        tell_symmetry(options.run, options.mirror)
+    if options.whole == 1 and (options.run / "fields.vtkhdf").is_file():
+        sheet = Sheet(options.run)
+        tell_symmetry(sheet, sheet.last, options.mirror, "forces and energy are those of a part",
+                      "--mirror (or --whole)")
     course = ram_course(history, tools, options.whole * 2**len(set(options.mirror)), cams, options.cam_friction)
     over = compared(course, crank, options)
     folder = made_folder(options.run / "press")

@@ -7,9 +7,11 @@ from typing import NamedTuple
 import numpy as np
 
 from dd3.alignment import kabsch
+from dd3.errors import LOG
 from dd3.section import in_plane
-from dd3.sheet import AXES, SHIFT, Line, Sheet, length
+from dd3.sheet import AXES, Line, Sheet, length
 
+ROUND_OFF = 1e-9  # distance from a plane, over the size of the sheet, of nodes that supports hold there
 ENDS = 0.1, 0.9  # places along the sheet at which the rotations are compared, over its length
 
 
@@ -53,9 +55,9 @@ def best_fit(points: np.ndarray, target: np.ndarray, mirror: Sequence[str] = (),
 
 def symmetry(start: np.ndarray, *shapes: np.ndarray) -> list[str]:
     """Return the axes of the planes x, y, z = 0 that bound the sheet at the start and hold its nodes there in other
-    shapes too: planes of symmetry of the model. Without that along which no node moves, as in plane strain. Positions
-    of nodes, mm."""
-    near = SHIFT * np.ptp(start, axis=0).max()
+    shapes too: planes of symmetry of the model. One along whose normal no node moves, as in plane strain, is left out.
+    Positions of nodes, mm."""
+    near = ROUND_OFF * np.ptp(start, axis=0).max()
     found = []
     for axis, own, *others in zip(AXES, start.T, *(shape.T for shape in shapes)):
         on = np.abs(own) <= near
@@ -71,6 +73,14 @@ def unnamed(sheet: Sheet, step: int, mirror: Sequence[str]) -> list[str]:
     latter is not named; else none."""
     planes = sorted({*mirror, *symmetry(sheet.start(step), sheet.points(step))})
     return [] if planes == sorted(set(mirror)) else planes
+
+
+def tell_symmetry(sheet: Sheet, step: int, mirror: Sequence[str], effect: str, option: str) -> None:
+    """Warn of planes of symmetry of the model that an option does not name, and of the effect."""
+    planes = unnamed(sheet, step, mirror)
+    if planes:
+        LOG.warning(f"{effect}, as the model keeps the border of the sheet on planes of symmetry; expected for {option}"
+                    f": {' '.join(planes)}")
 
 
 def kept(mirror: Sequence[str]) -> str:
