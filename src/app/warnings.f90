@@ -16,6 +16,7 @@ module dd3_app_warnings
   use dd3_model_terms_bead_points, only : bead_point_t, covered_length, find_bead_points
   use dd3_setup_axes, only : normal_warnings
   use dd3_setup_held_loads, only : find_held_loads, held_load_t
+  use dd3_setup_symmetry_planes, only : symmetry_warnings
   use dd3_setup_tool_report, only : tool_warnings
   implicit none
   private
@@ -54,6 +55,7 @@ contains
     call check_settings(case, model, warnings)
     call check_held_loads(case, model, warnings)
     call check_single_columns(case, model, warnings)
+    call symmetry_warnings(case, model, warnings)
     call check_element_length(case, model, warnings)
     call tool_warnings(case, model, warnings)
     call check_drawbeads(case, model, warnings)

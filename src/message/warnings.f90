@@ -88,7 +88,12 @@ contains
           "or degrees Celsius."), &
       row("W028", "unusual compliance of a tool", &
           "It lies above 0.01 mm/MPa: the tool deflects by 1 mm at 100 MPa.", &
-          "Check `compliance`, mm/MPa, against the geometry of the tool.")]
+          "Check `compliance`, mm/MPa, against the geometry of the tool."), &
+      row("W029", "plane of symmetry that material or gravity do not have", &
+          "A side of the sheet is held along its normal, as on a plane of symmetry, but the "// &
+          "flow stresses of the material or gravity are not symmetric to it: the result is not "// &
+          "that of a part of the whole sheet.", "The whole sheet; the warning is none for a "// &
+          "support such as a grip.")]
   end function input_warnings
 
   !> Return the warnings during a run.

@@ -8,7 +8,7 @@ module dd3_model_rim
   use dd3_model_sheet_faces, only : area_vector
   implicit none
   private
-  public :: set_rim, draw_in, mean_draw_in
+  public :: set_rim, draw_in, mean_draw_in, is_on_symmetry_plane
 
   !> Least component of the normal of a face on a plane of symmetry, whose nodes are all held in
   !> that direction.
@@ -22,19 +22,40 @@ contains
     type(model_t), intent(inout) :: model
 
     logical :: on_rim(model%face%n)
-    integer :: f
+    integer :: axis, f
 
     do f = 1, model%face%n
-      associate (corner => model%face%corner(:, f), node => model%face%node(:, f))
-        associate (bottom => model%column(1, corner), area => area_vector(model%x0(:, corner)))
-          ! A face on a plane of symmetry is held in the direction of its normal, which is an axis.
-          on_rim(f) = any(bottom == cshift(bottom, 1)) .and. .not. &
-              any(all(model%fixed(:, node), dim=2) .and. abs(area) > along_axis*norm2(area))
-        end associate
-      end associate
+      on_rim(f) = is_side(model, f) .and. &
+          .not. any([(is_on_symmetry_plane(model, f, axis), axis=1, 3)])
     end do
     model%rim_normal = -mean_normals(model%face, pack([(f, f=1, size(on_rim))], on_rim), model%x0)
   end subroutine set_rim
+
+  !> Whether a boundary face lies between the lower and the upper face of the sheet.
+  pure logical function is_side(model, f)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: f
+
+    associate (bottom => model%column(1, model%face%corner(:, f)))
+      is_side = any(bottom == cshift(bottom, 1))
+    end associate
+  end function is_side
+
+  !> Whether a boundary face lies on a plane of symmetry normal to an axis: a side of the sheet
+  !> whose nodes are held along it.
+  pure logical function is_on_symmetry_plane(model, f, axis) result(is_on)
+    !> With faces, columns and supports.
+    type(model_t), intent(in) :: model
+    !> Boundary face.
+    integer, intent(in) :: f
+    !> 1, 2, 3.
+    integer, intent(in) :: axis
+
+    associate (area => area_vector(model%x0(:, model%face%corner(:, f))))
+      is_on = is_side(model, f) .and. all(model%fixed(axis, model%face%node(:, f))) .and. &
+          abs(area(axis)) > along_axis*norm2(area)
+    end associate
+  end function is_on_symmetry_plane
 
   !> Return the draw-in of the nodes, `(n_node)`, mm; zero for a node that is not on the rim.
   pure function draw_in(model, x) result(value)

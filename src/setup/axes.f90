@@ -14,7 +14,7 @@ module dd3_setup_axes
   use dd3_model_model, only : model_t
   implicit none
   private
-  public :: set_axes, normal_report, normal_warnings
+  public :: set_axes, normal_report, normal_warnings, direction_text
 
   real(wp), parameter :: degrees = 180.0_wp/pi
   !> Angle between a direction of the input and the sheet, degrees, above which a warning is given.
@@ -59,8 +59,8 @@ contains
         end if
         call errors%push_input(material%source%at("rolling_direction"), "the rolling "// &
             "direction of material '"//material%source%called()//"' is normal to the sheet, "// &
-            "whose normal is "//in_words(normal), "rolling_direction in the plane of the sheet", &
-            code="E135")
+            "whose normal is "//direction_text(normal), &
+            "rolling_direction in the plane of the sheet", code="E135")
       end associate
     end do
   end subroutine set_axes
@@ -131,8 +131,8 @@ contains
     do m = 1, size(case%material)
       if (all(abs(model%axes(:, :, m) - case%material(m)%frame) <= 0.0_wp)) cycle
       text = text//"material "//trim(model%material_name(m))//": normal_direction is left out; "// &
-          "the normal of the sheet is "//in_words(model%axes(:, 3, m))// &
-          ", the rolling direction "//in_words(model%axes(:, 1, m))//newline
+          "the normal of the sheet is "//direction_text(model%axes(:, 3, m))// &
+          ", the rolling direction "//direction_text(model%axes(:, 1, m))//newline
     end do
   end function normal_report
 
@@ -154,10 +154,10 @@ contains
       associate (source => case%material(m)%source)
         angle = largest_deviation(model, m)
         if (angle > largest_angle) call warnings%add_new("W020", "normal_direction = "// &
-            in_words(model%axes(:, 3, m))//" of material '"//source%called()//"' is up to "// &
-            to_text(angle, 3)//" degrees away from the normal of the sheet, which is "// &
-            in_words(mean_normal(model, m))//" in the mean: the law would take other "// &
-            "directions for those in the sheet", source%at("normal_direction"))
+            direction_text(model%axes(:, 3, m))//" of material '"//source%called()// &
+            "' is up to "//to_text(angle, 3)//" degrees away from the normal of the sheet, "// &
+            "which is "//direction_text(mean_normal(model, m))//" in the mean: the law would "// &
+            "take other directions for those in the sheet", source%at("normal_direction"))
         rolling = source%numbers("rolling_direction")
         angle = degrees*asin(min(1.0_wp, abs(dot_product(rolling, model%axes(:, 3, m)))/ &
             norm2(rolling)))
@@ -188,7 +188,7 @@ contains
   end function largest_deviation
 
   !> Return a direction as text.
-  function in_words(direction) result(text)
+  function direction_text(direction) result(text)
     real(wp), intent(in) :: direction(3)
     character(len=:), allocatable :: text
 
@@ -196,6 +196,6 @@ contains
 
     clean = merge(direction, 0.0_wp, abs(direction) > 1.0e-9_wp)
     text = to_text(clean(1), 4)//" "//to_text(clean(2), 4)//" "//to_text(clean(3), 4)
-  end function in_words
+  end function direction_text
 
 end module dd3_setup_axes
