@@ -89,11 +89,11 @@ contains
       row("W028", "unusual compliance of a tool", &
           "It lies above 0.01 mm/MPa: the tool deflects by 1 mm at 100 MPa.", &
           "Check `compliance`, mm/MPa, against the geometry of the tool."), &
-      row("W029", "plane of symmetry that material or gravity do not have", &
+      row("W029", "plane of symmetry that material, gravity or tools do not have", &
           "A side of the sheet is held along its normal, as on a plane of symmetry, but the "// &
-          "flow stresses of the material or gravity are not symmetric to it: the result is not "// &
-          "that of a part of the whole sheet.", "The whole sheet; the warning is none for a "// &
-          "support such as a grip.")]
+          "flow stresses of the material, gravity, or a tool that reaches it and moves, turns "// &
+          "or tilts across it are not symmetric to it: the result is not that of a part of the "// &
+          "whole sheet.", "The whole sheet. A grip or another support is no plane of symmetry.")]
   end function input_warnings
 
   !> Return the warnings during a run.

@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Planes of symmetry of the sheet, by its supports, and what is not symmetric to them: a material
-!> whose flow stresses of a stress state and of its mirror image differ, and gravity. The part that
-!> is computed is then no part of the whole.
+!> whose flow stresses of a stress state and of its mirror image differ, gravity, and tools that
+!> reach the plane and move, turn or tilt across it. The part that is computed is then no part of
+!> the whole.
 module dd3_setup_symmetry_planes
   use dd3_base_kinds, only : wp
   use dd3_base_message, only : message_list_t
@@ -16,31 +17,31 @@ module dd3_setup_symmetry_planes
   public :: symmetry_warnings
 
   !> Relative difference of the flow stresses of a stress and its mirror image up to which a
-  !> material is symmetric, and part of gravity along the normal up to which this is.
+  !> material is symmetric, and part of a vector that may deviate from a direction.
   real(wp), parameter :: unlike = 1.0e-3_wp
 
 contains
 
-  !> Warn of planes of symmetry that materials or gravity do not have. A plane of symmetry is a side
-  !> of the sheet whose nodes are held along its normal, and not all of them in other directions.
+  !> Warn of planes of symmetry that materials, gravity or tools do not have. A plane of symmetry is
+  !> a side of the sheet whose nodes are held along its normal, and not all of them in other
+  !> directions.
   subroutine symmetry_warnings(case, model, warnings)
     !> Without errors.
     type(case_t), intent(in) :: case
     type(model_t), intent(in) :: model
     type(message_list_t), intent(inout) :: warnings
 
-    character(len=:), allocatable :: plane
+    character(len=:), allocatable :: unlike_tool
     real(wp) :: difference
-    integer :: axis, i, k
+    integer :: axis, i, k, node, t
 
-    ! The sheet of another run has its own axes; it has been warned of there.
-    if (size(case%start) > 0 .or. .not. allocated(model%material_of)) return
     do axis = 1, 3
       k = support_along(case, axis)
-      if (k == 0) cycle
-      plane = plane_along(model, axis)
-      if (len(plane) == 0) cycle
+      node = node_on_plane(model, axis)
+      if (k == 0 .or. node == 0) cycle
       do i = 1, size(case%material)
+        ! The sheet of another run has its own axes; it has been warned of there.
+        if (size(case%start) > 0) exit
         difference = unlikeness(model, i, axis)
         if (difference > unlike) call add("material '"//case%material(i)%source%called()// &
             "' with the rolling direction "//direction_text(model%axes(:, 1, i))// &
@@ -49,10 +50,16 @@ contains
       end do
       do i = 1, size(case%phase)
         associate (gravity => case%phase(i)%gravity)
-          if (case%phase(i)%has_gravity .and. abs(gravity(axis)) > unlike*norm2(gravity)) call &
-              add("gravity of phase '"//case%phase(i)%source%called()//"', "// &
-              to_text(gravity(axis), 4)//" mm/s2 along "//axis_name(axis))
+          if (case%phase(i)%has_gravity .and. across(gravity, axis)) call add("gravity of phase '" &
+              //case%phase(i)%source%called()//"', "//to_text(gravity(axis), 4)// &
+              " mm/s2 along "//axis_name(axis))
         end associate
+      end do
+      do t = 1, size(model%tool)
+        if (.not. reaches(model, t, axis, model%x0(axis, node))) cycle
+        unlike_tool = motion_across(case, t, axis)
+        if (len(unlike_tool) > 0) call add("tool '"//model%tool(t)%name// &
+            "', which reaches it and "//unlike_tool)
       end do
     end do
 
@@ -63,9 +70,10 @@ contains
       character(len=*), intent(in) :: what
 
       call warnings%add_new("W029", "fix = "//axis_name(axis)//" of '"// &
-          case%boundary(k)%source%called()//"': the side "//plane//" is held like a plane of "// &
-          "symmetry, which is none of "//what//"; compute the whole sheet, unless this is "// &
-          "another support", case%boundary(k)%source%at("fix"))
+          case%boundary(k)%source%called()//"': the side "//axis_name(axis)//" = "// &
+          to_text(model%x0(axis, node), 4)//" is held like a plane of symmetry, which is none "// &
+          "of "//what//"; compute the whole sheet, unless this is another support", &
+          case%boundary(k)%source%at("fix"))
     end subroutine add
 
   end subroutine symmetry_warnings
@@ -81,26 +89,83 @@ contains
     k = 0
   end function support_along
 
-  !> Return the place of the first plane of symmetry normal to an axis, "x = 0"; empty for none, as
-  !> where all nodes of the sheet are held.
-  function plane_along(model, axis) result(text)
+  !> Return a node of the first plane of symmetry normal to an axis; 0 for none, as where all nodes
+  !> of the sheet are held.
+  pure integer function node_on_plane(model, axis) result(on_plane)
     type(model_t), intent(in) :: model
     integer, intent(in) :: axis
-    character(len=:), allocatable :: text
 
     integer :: f
 
-    text = ""
+    on_plane = 0
     if (all(model%fixed(axis, :))) return
     do f = 1, model%face%n
       if (.not. is_on_symmetry_plane(model, f, axis)) cycle
       associate (node => model%face%node(:, f))
         if (any(all(model%fixed(:, node), dim=2) .neqv. [1, 2, 3] == axis)) cycle
-        text = axis_name(axis)//" = "//to_text(model%x0(axis, node(1)), 4)
+        on_plane = node(1)
       end associate
       return
     end do
-  end function plane_along
+  end function node_on_plane
+
+  !> Whether a vector has a component along an axis.
+  pure logical function across(vector, axis)
+    real(wp), intent(in) :: vector(3)
+    integer, intent(in) :: axis
+
+    across = abs(vector(axis)) > unlike*norm2(vector)
+  end function across
+
+  !> Whether a tool at its start reaches a plane, within the thickness of the sheet.
+  pure logical function reaches(model, t, axis, place)
+    type(model_t), intent(in) :: model
+    !> Tool, and the axis normal to the plane.
+    integer, intent(in) :: t, axis
+    !> Place of the plane on the axis, mm.
+    real(wp), intent(in) :: place
+
+    associate (tool => model%tool(t))
+      reaches = abs(place - tool%position(axis) - 0.5_wp*(tool%surface%lower(axis) + &
+          tool%surface%upper(axis))) <= 0.5_wp*(tool%surface%upper(axis) - &
+          tool%surface%lower(axis)) + model%thickness
+    end associate
+  end function reaches
+
+  !> Return the first motion of a tool that is not symmetric to a plane, with its phase; empty for
+  !> none.
+  function motion_across(case, t, axis) result(text)
+    type(case_t), intent(in) :: case
+    !> Tool, and the axis normal to the plane.
+    integer, intent(in) :: t, axis
+    character(len=:), allocatable :: text
+
+    integer :: i, k
+
+    text = ""
+    do i = 1, size(case%phase)
+      associate (phase => case%phase(i))
+        do k = 1, size(phase%move)
+          if (phase%move(k)%tool == t .and. across(phase%move(k)%vector, axis)) text = "moves"
+        end do
+        do k = 1, size(phase%press)
+          if (phase%press(k)%tool == t .and. across(phase%press(k)%vector, axis)) text = "presses"
+        end do
+        if (len(text) > 0) text = text//" along "//axis_name(axis)
+        do k = 1, size(phase%turn)
+          associate (direction => phase%turn(k)%value(4:6))
+            if (phase%turn(k)%tool == t .and. abs(direction(axis)) < (1.0_wp - unlike)* &
+                norm2(direction)) text = "turns about an axis that is not its normal"
+          end associate
+        end do
+        if (any([(phase%tilt(k)%tool == t, k=1, size(phase%tilt))]) .or. &
+            any([(phase%pin(k)%tool == t, k=1, size(phase%pin))])) text = "can tilt"
+        if (len(text) == 0) cycle
+        text = text//" in phase '"//phase%source%called()//"'"
+      end associate
+      return
+    end do
+  end function motion_across
 
   !> Return the largest relative difference of the flow stresses of a material for stresses in the
   !> sheet and for their mirror images; 0 for a material that is not used.
