@@ -35,6 +35,7 @@ contains
     real(wp) :: difference
     integer :: axis, i, k, node, t
 
+    if (size(case%boundary) == 0) return
     do axis = 1, 3
       k = support_along(case, axis)
       node = node_on_plane(model, axis)

@@ -234,6 +234,19 @@ def test_temperature_curves(program):
     assert numbers(text, "temperature") == pytest.approx({"Tr": 20, "Tm": 650, "m": 0.8}, rel=1e-4), said
 
 
+@pytest.mark.parametrize("values, noted", [("true", False), ("nominal", True), ("beyond necking", True)])
+def test_nominal_values(program, values, noted):
+    """Check the note on a curve that no tension test gives: its slope falls below its stress, at a strain of n."""
+    strain = np.linspace(0.002, 0.45 if values == "beyond necking" else 0.24, 40)
+    stress = swift(strain)
+    if values == "nominal":
+        strain, stress = np.expm1(strain), stress / np.exp(strain)
+    write("tension.txt", strain, stress)
+    text, _ = identified(program, "swift", "tension.txt", command="fit")
+    found = re.search(r"# Note: from the strain (\S+) on a curve rises by less than its stress", text)
+    assert bool(found) == noted and (not found or 0.02 < float(found[1]) < 0.2589), text
+
+
 @with_library
 def test_ratios_and_curve(program):
     """Check that a curve beside ratios is one of the reference rate: the hardening law is that at rest, and with a

@@ -13,6 +13,8 @@ from dd3.identify.least_squares import Case, Fit, LoadPath, Points, Search, law_
 from dd3.identify.measured_table import compared, misfit
 from dd3.identify.measurements import TENSION, read_curve
 
+NECKED = 0.8  # slope of a tension curve over its stress below which it is noted, 1 at the largest force
+NECKED_PART = 0.1  # of the strain, over which the slope is taken at least
 MISSED_CURVE = 0.01  # root mean square of the difference, over the largest stress, that is noted
 LAWS = ("linear", "swift", "voce", "swift_voce", "ludwik", "hockett_sherby", "table", "yoshida_uemori",
         "teodosiu_hu")
@@ -193,6 +195,18 @@ class Model:
         return result
 
 
+def strain_past_necking(curve: Curve) -> float | None:
+    """Return the strain from which the slope of a tension curve up to its end is below its stress: there a test necks
+    (Considère). None for a curve without such a part, and for one with a reversal."""
+    strain, stress, turns = curve
+    if len(turns):
+        return None
+    from_here = strain < strain[-1] - NECKED_PART * (strain[-1] - strain[0])
+    slope = (stress[-1] - stress[from_here]) / (strain[-1] - strain[from_here])
+    flat = np.flatnonzero(slope < NECKED * 0.5 * (stress[-1] + stress[from_here]))
+    return float(strain[flat[0]]) if len(flat) else None
+
+
 def curve_table(test: Test, values: np.ndarray) -> list[str]:
     """Return the lines that compare eight rows of a curve, and the differences of all (MPa)."""
     strain, stress, _ = test.curve
@@ -226,6 +240,11 @@ def hardening(model: Model, tests: Sequence[Test], points: Points, search: Searc
         names = [name for name in NOT_IN_CURVES[model.law] if name not in model.fixed]
         notes += [f"no tension and compression determines {', '.join(names)}, which act after a change to another "
                   "direction only: --fix hardening.NAME=VALUE"] * bool(names)
+    necked = [strain for test in tests if (strain := strain_past_necking(test.curve)) is not None]
+    if necked:
+        notes.append(f"from the strain {min(necked):.3g} on a curve rises by less than its stress per strain: a tension "
+                     "test necks before. Are its values nominal ones (true stress = nominal stress (1 + strain)), or of "
+                     "another test, such as bulging?")
     if far > MISSED_CURVE:
         notes.append(f"the curve{'s are' if len(tests) > 1 else ' is'} missed by {100 * far:.1f} % of "
                      f"{'their' if len(tests) > 1 else 'its'} largest stress: another law may fit "
