@@ -134,16 +134,12 @@ contains
     !> dx/dxi, mm.
     real(wp), intent(out) :: jacobian(n_slope, 3)
 
-    real(wp) :: total
-    integer :: a, i, q
+    integer :: a, i
 
+    jacobian = 0.0_wp
     do i = 1, 3
-      do q = 1, n_slope
-        total = 0.0_wp
-        do a = 1, n_node
-          total = total + slope(q, a)*x(i, a)
-        end do
-        jacobian(q, i) = total
+      do a = 1, n_node
+        jacobian(:, i) = jacobian(:, i) + slope(:, a)*x(i, a)
       end do
     end do
   end subroutine jacobians

@@ -124,8 +124,9 @@ contains
     attempt%number = attempt%number + 1
   end subroutine try_again
 
-  !> Set the bound of r after an accepted increment: a cut-back sets one, which every other
-  !> increment raises; a failed increment leaves none, so that a restart repeats its attempts.
+  !> Set the bound of r after an accepted increment: a cut-back sets it to its r, raised at once but
+  !> in a release, where it rises faster; every other increment raises it. A failed increment leaves
+  !> none, so that a restart repeats its attempts.
   pure subroutine set_next_r_cap(state, attempt)
     !> With the bound of the increment.
     type(state_t), intent(inout) :: state
@@ -133,6 +134,7 @@ contains
     type(attempt_t), intent(in) :: attempt
 
     if (attempt%after_failure) state%r_cap = attempt%limit%r
+    if (attempt%after_failure .and. attempt%releases) return
     if (state%r_cap < huge(1.0_wp)/release_growth) then
       state%r_cap = merge(release_growth, growth, attempt%releases)*state%r_cap
     end if

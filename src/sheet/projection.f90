@@ -2,7 +2,8 @@
 !> Curves and sheet in one plane. With a direction of projection it is the plane normal to that; for
 !> curves on the sheet it is that of the initial sheet, on which they are mapped through the
 !> thickness, along the columns of nodes: closest points of the middle would change their order
-!> where the sheet is bent.
+!> where the sheet is bent. A point beyond a plane of symmetry at which the sheet ends is mapped by
+!> its mirror image: the curve is that of the whole.
 module dd3_sheet_projection
   use dd3_base_error, only : error_list_t
   use dd3_base_kinds, only : sqrt2, wp
@@ -24,6 +25,18 @@ module dd3_sheet_projection
   !> Quadrilaterals examined for a point, iterations on each, largest natural coordinate.
   integer, parameter :: n_near = 9, most_iterations = 20
   real(wp), parameter :: farthest = 10.0_wp
+  !> Distance of the border from a plane of symmetry, over the length of the elements.
+  real(wp), parameter :: on_plane = 1.0e-3_wp
+
+  !> A plane of symmetry x = const. or y = const. at which the sheet ends.
+  type :: mirror_t
+    !> Its normal: 1, 2.
+    integer :: axis = 0
+    !> Whether the sheet is on the side of the larger coordinate.
+    logical :: above = .true.
+    !> Its place now and on the initial sheet, mm.
+    real(wp) :: now = 0.0_wp, initial = 0.0_wp
+  end type mirror_t
 
 contains
 
@@ -41,6 +54,7 @@ contains
 
     real(wp) :: base(3, 2), column(3, 2, grid%n_column)
     real(wp), allocatable :: mapped(:, :)
+    type(mirror_t), allocatable :: mirror(:)
     integer :: k
 
     associate (bottom => sheet%x(:, grid%node(0, :)), &
@@ -58,8 +72,9 @@ contains
       return
     end if
     plane = sheet%mesh%x(:2, grid%node(0, :))
+    mirror = mirrors_of(grid, column(:, 1, :), plane)
     do k = 1, size(curve)
-      call map_curve(grid, column, plane, curve(k), spec, mapped, errors)
+      call map_curve(grid, column, plane, mirror, curve(k), spec, mapped, errors)
       call new_loop(loop(k), mapped)
     end do
   end subroutine project_curves
@@ -78,12 +93,82 @@ contains
     base(:, 2) = cross(axis, base(:, 1))
   end function base_across
 
+  !> Return the planes of symmetry at which the sheet may end: a coordinate is extreme on a part of
+  !> the border, which was straight along the other one.
+  pure function mirrors_of(grid, middle, plane) result(mirror)
+    type(grid_t), intent(in) :: grid
+    !> Positions of the columns now, `(3, n_column)`, and on the initial sheet, `(2, n_column)`, mm.
+    real(wp), intent(in) :: middle(:, :), plane(:, :)
+    type(mirror_t), allocatable :: mirror(:)
+
+    type(mirror_t) :: this
+    real(wp) :: near
+    integer :: i, q, side, n
+    logical :: is_straight
+
+    allocate (mirror(0))
+    near = on_plane*mean_length(grid, plane)
+    do side = 1, 4
+      this%axis = (side + 1)/2
+      this%above = mod(side, 2) == 1
+      this%now = merge(minval(middle(this%axis, :)), maxval(middle(this%axis, :)), this%above)
+      n = 0
+      is_straight = .true.
+      do q = 1, grid%n_quad
+        do i = 1, 4
+          if (grid%neighbour(i, q) /= 0) cycle
+          associate (ends => grid%corner([i, mod(i, 4) + 1], q))
+            if (any(abs(middle(this%axis, ends) - this%now) > near)) cycle
+            if (n == 0) this%initial = plane(this%axis, ends(1))
+            is_straight = is_straight .and. &
+                all(abs(plane(this%axis, ends) - this%initial) <= near)
+          end associate
+          n = n + 1
+        end do
+      end do
+      if (n > 0 .and. is_straight) mirror = [mirror, this]
+    end do
+  end function mirrors_of
+
+  !> Map the mirror image of a point that lies beyond planes of symmetry, and mirror the result.
+  pure subroutine map_image(grid, column, plane, mirror, near, point, mapped, distance)
+    type(grid_t), intent(in) :: grid
+    real(wp), intent(in) :: column(:, :, :), plane(:, :)
+    type(mirror_t), intent(in) :: mirror(:)
+    !> Distance of an image that is near the sheet, mm.
+    real(wp), intent(in) :: near, point(3)
+    !> Unchanged for a point that is not beyond a plane, or whose image is not near the sheet, and
+    !> farther.
+    real(wp), intent(inout) :: mapped(2), distance
+
+    real(wp) :: image(3), place(2), off
+    logical :: beyond(size(mirror))
+    integer :: i
+
+    image = point
+    do i = 1, size(mirror)
+      associate (one => mirror(i))
+        beyond(i) = (image(one%axis) < one%now) .eqv. one%above
+        if (beyond(i)) image(one%axis) = 2.0_wp*one%now - image(one%axis)
+      end associate
+    end do
+    if (.not. any(beyond)) return
+    call map_point(grid, column, plane, image, place, off)
+    if (off > max(distance, near)) return
+    do i = 1, size(mirror)
+      if (beyond(i)) place(mirror(i)%axis) = 2.0_wp*mirror(i)%initial - place(mirror(i)%axis)
+    end do
+    mapped = place
+    distance = off
+  end subroutine map_image
+
   !> Map a curve on the initial sheet.
-  subroutine map_curve(grid, column, plane, curve, spec, mapped, errors)
+  subroutine map_curve(grid, column, plane, mirror, curve, spec, mapped, errors)
     type(grid_t), intent(in) :: grid
     !> Columns: the middle and the vector from there to the top, `(3, 2, n_column)`; their positions
     !> on the initial sheet, `(2, n_column)`; mm.
     real(wp), intent(in) :: column(:, :, :), plane(:, :)
+    type(mirror_t), intent(in) :: mirror(:)
     type(curve_t), intent(in) :: curve
     type(trim_spec_t), intent(in) :: spec
     !> `(2, n)`, mm.
@@ -109,6 +194,7 @@ contains
           point = from + (real(j - 1, wp)/real(parts(i), wp))*(to - from)
         end associate
         call map_point(grid, column, plane, point, mapped(:, k), distance)
+        call map_image(grid, column, plane, mirror, spacing*step, point, mapped(:, k), distance)
         largest = max(largest, distance)
       end do
     end do

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-#: {"name": "docs_tutorial", "labels": ["docs", "slow"], "timeout": 1800, "cost": 80}
+#: {"name": "docs_tutorial", "labels": ["docs", "slow"], "timeout": 1800, "cost": 300}
 """Run the commands of docs/tutorial.md and compare what they print, and the numbers of the text, with the page.
 
   tutorial.py --program build/release/dd3imp --work build/tutorial [--write]

@@ -77,6 +77,8 @@ def command_line() -> argparse.ArgumentParser:
     whole.add_argument("--program", metavar="FILE",
                        help="the program, which checks the input file (default: dd3imp as `dd3 info` shows it)")
     whole.add_argument("--side", choices=("punch", "die"), help="the tool that touches the faces (punch)")
+    whole.add_argument("--symmetric", action="store_true",
+                       help="compute the half or the quarter x, y > 0 of a part with planes of symmetry there")
     whole.add_argument("--material", type=Path, metavar="FILE",
                        help="file with a *MATERIAL for the input file, or the name of one of the library, such as dc06 "
                             "(a mild steel)")

@@ -242,9 +242,9 @@ def hardening(model: Model, tests: Sequence[Test], points: Points, search: Searc
                   "direction only: --fix hardening.NAME=VALUE"] * bool(names)
     necked = [strain for test in tests if (strain := strain_past_necking(test.curve)) is not None]
     if necked:
-        notes.append(f"from the strain {min(necked):.3g} on a curve rises by less than its stress per strain: a tension "
-                     "test necks before. Are its values nominal ones (true stress = nominal stress (1 + strain)), or of "
-                     "another test, such as bulging?")
+        notes.append(f"from the strain {min(necked):.3g} on a curve rises by less than its stress per strain: a "
+                     "tension test necks before. Are these nominal values (true stress = nominal stress (1 + strain)), "
+                     "or of another test, such as bulging?")
     if far > MISSED_CURVE:
         notes.append(f"the curve{'s are' if len(tests) > 1 else ' is'} missed by {100 * far:.1f} % of "
                      f"{'their' if len(tests) > 1 else 'its'} largest stress: another law may fit "

@@ -19,6 +19,7 @@ from dd3.progress import Progress
 from dd3.tools.faces import numbers_of, side_of_sheet
 from dd3.tools.moved import rotation
 from dd3.tools.settings import OPEN, ToolSettings
+from dd3.tools.symmetry import mirrors_of
 
 UP = np.array([0.0, 0.0, 1.0])
 # Angle up to which a direction is z, degrees.
@@ -45,6 +46,8 @@ def read_for_tools(options: ToolSettings) -> Reading:
         progress.end()
         options.holes = reading.holes
         settle(reading, options, up, given)
+        if not reading.faults:
+            options.mirrors = mirrors_of(reading.symmetry, reading.shape.size, options)
         if reading.sheet.kind == "block" and not reading.faults:
             options.angles = angles_of_block(gmsh, reading, options)
         faces = options.taken or (reading.sheet.kind == "surface" and not options.faces and reading.shape.tags)

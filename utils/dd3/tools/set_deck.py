@@ -6,7 +6,7 @@ import numpy as np
 
 from dd3.curve import write_curves
 from dd3.mesh import Mesh, write_inp
-from dd3.tools import set_material
+from dd3.tools import set_material, symmetry
 from dd3.tools.beads import Beads
 from dd3.tools.pad_force import Pin, axes_of
 from dd3.tools.set_blank import Blank
@@ -29,7 +29,7 @@ FRICTION = 0.1
 EARTH = 9810.0
 DECK = """# Draws {part} and releases it; tools by {command}
 # The highest point of the die's binder, without a holder that of the die, is at z = 0; the punch starts at the blank
-# and moves down.
+# and moves down.{part_of}
 *TITLE
   {part}
 
@@ -49,7 +49,7 @@ DECK = """# Draws {part} and releases it; tools by {command}
 {cut}
 {tools}{beads}*CONTACT
 
-{support}{pins}{gravity}{closing}{clamp}*PHASE draw
+{symmetry}{support}{pins}{gravity}{closing}{clamp}*PHASE draw
   control = punch
   trial = 1.0
   move = punch 0 0 -${{depth}}
@@ -87,12 +87,12 @@ SUPPORT = """# The middle of the blank does not move sideways, as it lies freely
   near = {middle}
 
 """
-ASIDE = "  displace = middle x 0\n  displace = middle y 0\n"
-FREE = "  free = middle x y\n"
+ASIDE = "  displace = middle {axis} 0\n"
+FREE = "  free = middle {axes}\n"
 # Without holder and pad.
 HELD = """*BOUNDARY middle
   set = middle
-  fix = x y
+  fix = {axes}
 
 """
 # The nodes of the lower face nearest to the middles of the holes.
@@ -114,7 +114,8 @@ GRAVITY = """# The blank is laid on the die by its weight.
   hold = punch
   hold = holder
   gravity = 0 0 -{earth:g}
-""" + ASIDE + "\n"
+{aside}
+"""
 BLANK, MESH = "blank.txt", "blank.inp"  # outline of the blank; its mesh, if it does not lie level
 CUT = """
 *TRIM blank
@@ -128,7 +129,8 @@ CLOSING = """# The holder bends the blank onto the die.
   hold = die
   hold = punch
   move = holder 0 0 -{closing:.6g}
-""" + ASIDE + "\n"
+{aside}
+"""
 CLAMP = """*PHASE clamp
   control = load
   trial = 1.0
@@ -144,7 +146,8 @@ TOUCH = """# The holder touches the blank.
   hold = die
   hold = punch
   press = holder 0 0 -{force:.3g}
-""" + ASIDE + "\n"
+{aside}
+"""
 TOUCHING = 0.1  # its force over that of the holder
 
 
@@ -153,33 +156,40 @@ def deck(options: ToolSettings, tools: ToolSet, beads: Beads, command: str) -> s
     (low, high), divisions, levels, length = divided(options, tools)
     pressed = {name: PRESSURE * tools.area[name] for name in ("holder", "pad") if name in tools.surfaces}
     pressed |= {"pad": tools.pad_force} if "pad" in pressed and tools.pad_force else {}
-    forces = [f"  {name} = {force:.3g}     # N, {force / tools.area[name]:.2g} MPa\n"
+    axes = symmetry.of_whole(options)
+    part = 0.5**len(axes)
+    forces = [f"  {name} = {part * force:.3g}     # N, {force / tools.area[name]:.2g} MPa\n"
               for name, force in pressed.items()]
     forces += [f"  bead = {beads.force:.3g}            # N/mm, restraint of the draw-beads\n",
                f"  lift = {beads.lift:.3g}            # N/mm, by which they press the sheet on the die\n"
                ] if beads.lines else []
     presses = [f"  press = {name} 0 0 {'-' if name == 'holder' else ''}${{{name}}}\n" for name in pressed]
     inclined = tools.blank.inclined
-    middle = pair(tools.blank.placed(np.array([(low + high) / 2]))[0])
-    support = SUPPORT.format(middle=middle) if tools.closing or inclined or not pressed else ""
-    support += "" if pressed else HELD
-    closing = (TOUCH.format(force=TOUCHING * pressed["holder"]) if inclined else
-               CLOSING.format(closing=tools.closing - SHORT * options.thickness) if tools.closing else "")
+    middle = np.where([axis in axes for axis in (0, 1)], 0.0, (low + high) / 2)
+    free = [name for axis, name in enumerate(symmetry.AXES) if axis not in axes]
+    support = (SUPPORT.format(middle=pair(tools.blank.placed(middle[None])[0]))
+               if free and (tools.closing or inclined or not pressed) else "")
+    support += HELD.format(axes=" ".join(free)) if free and not pressed else ""
+    aside = "".join(ASIDE.format(axis=axis) for axis in free)
+    closing = (TOUCH.format(force=TOUCHING * pressed["holder"], aside=aside) if inclined else
+               CLOSING.format(closing=tools.closing - SHORT * options.thickness, aside=aside) if tools.closing else "")
     weighs = tools.closing > 0 and set_material.density_of(options.material) is not None
     sheet = (INCLINED_SHEET.format(file=MESH, length=length) if inclined
              else LEVEL_SHEET.format(origin=pair(low), size=pair(high - low)))
-    return DECK.format(part=options.source.stem, command=command,
+    return DECK.format(part=options.source.stem, command=command, symmetry=symmetry.supports(axes),
+                       part_of=f"\n# Planes of symmetry {symmetry.said(options)}." if axes else "",
                        sizes="" if inclined else SIZES.format(thickness=options.thickness, length=length,
                                                               divisions=pair(np.array(divisions))),
                        levels=levels, smallest=length / 2**levels, travel=f"{tools.travel:.6g}", forces="".join(forces),
                        cut=CUT.format(file=BLANK) + (NORMAL if inclined else "") if tools.blank.cut else "",
                        material=set_material.text_of(options.material), name=set_material.name_of(options.material),
                        friction=FRICTION, beads=beads.blocks(), pins=pinned(tools.pins),
-                       gravity=GRAVITY.format(earth=EARTH) if weighs else "",
+                       gravity=GRAVITY.format(earth=EARTH, aside=aside) if weighs else "",
                        light="  gravity = 0 0 0\n" if weighs else "", sheet=sheet,
                        tools="".join(TOOL.format(name=name, contact=CONTACT[name]) for name in tools.surfaces),
                        support=support, closing=closing,
-                       clamp=CLAMP.format(presses="".join(presses), free=FREE if closing else "")
+                       clamp=CLAMP.format(presses="".join(presses), free=FREE.format(axes=" ".join(free))
+                                          if closing and free else "")
                        if pressed else "")
 
 
@@ -193,14 +203,20 @@ def divided(options: ToolSettings, tools: ToolSet) -> tuple[np.ndarray, list[int
     box = tools.blank.box
     if tools.blank.cut:  # that does not meet the border of the mesh
         box = box + AROUND * length * np.array([[-1.0], [1.0]])
-    return box, [2 * int(np.ceil(side / length / 2)) for side in box[1] - box[0]], levels, length
+    axes = list(symmetry.of_whole(options))
+    box[0, axes] = 0.0
+    divisions = [int(np.ceil(side / length)) if axis in axes else 2 * int(np.ceil(side / length / 2))
+                 for axis, side in enumerate(box[1] - box[0])]
+    return box, divisions, levels, length
 
 
 def write_blank(options: ToolSettings, tools: ToolSet) -> None:
     """Write the outline of a blank that is cut along it, and the mesh of one that does not lie level."""
     blank, of = tools.blank, options.source
     if blank.cut:
-        write_curves(options.target / BLANK, [blank.placed(blank.outline)], f"outline of the blank of {of.name}")
+        outline = symmetry.mirrored(blank.outline, symmetry.of_whole(options), 0.0)
+        assert outline is not None  # it goes around the origin
+        write_curves(options.target / BLANK, [blank.placed(outline)], f"outline of the blank of {of.name}")
     if blank.inclined:
         (low, high), (across, along), _, _ = divided(options, tools)
         plan = np.array([[x, y] for y in np.linspace(low[1], high[1], along + 1)

@@ -18,7 +18,18 @@ from dd3.part import setup, table
 from dd3.part.command import write_reading
 from dd3.progress import Progress, doing
 from dd3.sheet import Sheet
-from dd3.tools import beads, drawability, pad_force, picture, report, set_deck, set_material, tool_set, trim_deck
+from dd3.tools import (
+    beads,
+    drawability,
+    pad_force,
+    picture,
+    report,
+    set_deck,
+    set_material,
+    symmetry,
+    tool_set,
+    trim_deck,
+)
 from dd3.tools.limits import beside
 from dd3.tools.one_tool import judge_distance
 from dd3.tools.settings import DRAW, ToolSettings
@@ -90,6 +101,7 @@ def made_set(options: ToolSettings, command: str) -> dict[str, report.Report]:
     with session() as gmsh, about(options.source):
         tools, options = tools_of(gmsh, options, progress)
     progress.end()
+    refuse_symmetric(tools, options)
     reports = judge_set(tools, options)
     if options.target and not any(result.errors for result in reports.values()):
         if "pad" in tools.surfaces:
@@ -98,6 +110,8 @@ def made_set(options: ToolSettings, command: str) -> dict[str, report.Report]:
         write_set(tools, options, found, command)
         result = report.Report([f"  {'travel':<10} {tools.travel:.6g} mm",
                                 f"  {'blank':<10} {set_deck.said(options, tools.blank)}"])
+        if options.mirrors and not cannot_end(tools):
+            result.add("symmetry", symmetry.said(options))
         lines, warnings = drawability.judged(tools, options.material)
         for line in [*lines, set_material.said(options.material), *set_deck.notes(options, tools),
                      *(found.said() if options.beads else [])]:
@@ -108,6 +122,19 @@ def made_set(options: ToolSettings, command: str) -> dict[str, report.Report]:
         if options.curves:
             reports[str(options.target / trim_deck.DECK)] = report.Report([f"  {'curves':<10} {tools.curves.said}"])
     return reports
+
+
+def cannot_end(tools: tool_set.ToolSet) -> str:
+    """Return why the input file of a part with planes of symmetry is that of the whole part; empty if it need not."""
+    if tools.pins:
+        return "locating pins hold the floor"
+    return "the blank lies on an inclined binder" if tools.blank.inclined else ""
+
+
+def refuse_symmetric(tools: tool_set.ToolSet, options: ToolSettings) -> None:
+    """Refuse to compute a half or a quarter of a part where the input file is that of the whole part."""
+    if options.symmetric and (reason := cannot_end(tools)):
+        raise Problem(f"--symmetric: {reason}, and the whole part is computed: leave the option out")
 
 
 def program_of(options: ToolSettings) -> Path | None:

@@ -31,7 +31,8 @@ class ToolSettings:
     Of the set of tools of a part: thickness of the sheet, clearance, radius of the shoulder, widths of flange and
     margin, all of these by the part where they are not given; beads: propose draw-beads by the estimate of the blank,
     if it is the path ".", or by a finished run; program: the program that checks the input file; side: the tool that
-    touches the faces, punch or die; material: file, or name of the library.
+    touches the faces, punch or die; material: file, or name of the library; symmetric: the input file computes the
+    half or quarter x, y > 0 of a part with planes of symmetry there.
     """
 
     source: Path
@@ -58,14 +59,16 @@ class ToolSettings:
     program: str | Path | None = None
     side: str = OPEN
     material: Path | None = None
+    symmetric: bool = False
     whole: bool = field(default=False, init=False)  # the set of tools of a part, not one tool
     # What the reading of a part finds: the part without its openings, the faces that one tool touches, its rims and
-    # holes, the roles of faces, angles and radii of sharp edges, projected areas of what is seen from a direction, and
-    # why there can be no die around it.
+    # holes, the axes of the tools normal to planes of symmetry at 0, the roles of faces, angles and radii of sharp
+    # edges, projected areas of what is seen from a direction, and why there can be no die around it.
     closed: Any = field(default=None, init=False)
     taken: Any = field(default=None, init=False)
     curves: list[np.ndarray] = field(default_factory=list, init=False)
     holes: Sequence[Any] = field(default=(), init=False)
+    mirrors: tuple[int, ...] = field(default=(), init=False)
     roles: dict[int, str] = field(default_factory=dict, init=False)
     angles: dict[int, float] = field(default_factory=dict, init=False)
     sharp: dict[int, float] = field(default_factory=dict, init=False)
@@ -122,6 +125,8 @@ class ToolSettings:
         for name in ("clearance", "shoulder", "flange", "margin", "side", "material", "beads"):
             if getattr(self, name) is not None and not self.whole:
                 raise Problem(f"--{name} goes with a folder, or --thickness")
+        if self.symmetric and not self.whole:
+            raise Problem("--symmetric goes with a folder, or --thickness")
         if self.whole:
             self.check_set()
 

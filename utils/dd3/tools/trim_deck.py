@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from dd3.curve import write_curves
-from dd3.tools import set_material
+from dd3.tools import set_material, symmetry
 from dd3.tools.moved import rotation
 from dd3.tools.patch_distance import Distance
 from dd3.tools.settings import ToolSettings
@@ -30,7 +30,7 @@ TEXT = """# Cuts the sheet of draw.dat along the rims and holes of {part}, held 
   along = 0 0 0         # curves on the sheet
   keep = inside         # of the outer rim, outside of the holes
 
-*PHASE springback
+{symmetry}*PHASE springback
   unload = on
 """
 OPERATIONS = """# {part}, drawn and released, and trimmed in its drawn shape and released:
@@ -101,9 +101,12 @@ def divided(points: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray]
 def write(options: ToolSettings, curves: Curves, height: float) -> None:
     """Write the curves of a part, where the die has it, the input file and the process; `height` is that of the part in
     the coordinates of the tools, mm."""
-    write_curves(options.target / CURVES, [points + np.array([0.0, 0.0, height]) for points in curves.points],
-                 options.source.name)
+    axes = symmetry.of_whole(options)
+    kept = [symmetry.mirrored(points, axes, options.tolerance) for points in curves.points]
+    write_curves(options.target / CURVES, [points + np.array([0.0, 0.0, height]) for points in kept
+                                           if points is not None], options.source.name)
     material = set_material.text_of(options.material)
-    (options.target / DECK).write_text(TEXT.format(part=options.source.stem, material=material, curves=CURVES),
+    (options.target / DECK).write_text(TEXT.format(part=options.source.stem, material=material, curves=CURVES,
+                                                   symmetry=symmetry.supports(axes)),
                                        encoding="utf-8")
     (options.target / PROCESS).write_text(OPERATIONS.format(part=options.source.stem, file=PROCESS), encoding="utf-8")
