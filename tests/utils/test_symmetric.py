@@ -9,10 +9,12 @@ import numpy as np
 import pytest
 from helpers import call
 from part_set import write
+from scipy.spatial import cKDTree
 
 from dd3.errors import Problem
 from dd3.run import read_frame
 from dd3.sheet import Sheet
+from dd3.tools.set_files import draw_in_of
 from dd3.tools.symmetry import mirrored
 
 TRAY = {"levels": 0, "holder": 19300}  # N on the whole
@@ -93,6 +95,10 @@ def test_quarter_of_tray(parts, tmp_path, program):
     assert np.abs(4 * force[1] / force[0] - 1).max() < 0.02, force
     assert own == pytest.approx(thinned, abs=0.002)
     assert np.abs(cut[:, :2].min(axis=0)).max() < 1e-9
+    place, draw_in = draw_in_of(tmp_path / "whole" / "draw.out")
+    of_part = draw_in_of(tmp_path / "quarter" / "draw.out")
+    nearest = cKDTree(of_part[0]).query(place)
+    assert max(nearest[0].max(), np.abs(of_part[1][nearest[1]] - draw_in).max()) < 0.02 * draw_in.max()
     assert np.ptp(cut, axis=0) * [2, 2, 1] == pytest.approx(np.ptp(sheet, axis=0), abs=0.2)
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from dd3 import places
+from dd3 import places, springback
 from dd3.errors import Problem
 from dd3.gmsh_session import session
 from dd3.part import setup, table
@@ -34,6 +34,7 @@ from dd3.tools.limits import beside
 from dd3.tools.one_tool import judge_distance
 from dd3.tools.settings import DRAW, ToolSettings
 from dd3.tools.surface import write
+from dd3.tools.symmetry import AXES
 
 ESTIMATE = Path()  # what `beads` is without a run
 
@@ -175,10 +176,18 @@ def set_pad_force(tools: tool_set.ToolSet, options: ToolSettings) -> None:
 
 
 def draw_in_of(run: Path) -> tuple[np.ndarray, np.ndarray]:
-    """Return the points in plan of the rim of the sheet at the end of a run (n, 2), and their draw-in, mm."""
+    """Return the points in plan of the rim of the sheet at the end of a run (n, 2), and their draw-in, mm; of a part
+    between planes of symmetry those of the whole."""
     sheet = Sheet(run)
     rim = np.concatenate(sheet.outline())
-    return sheet.points(-1)[rim, :2], sheet.values(-1, "draw_in")[0][rim]
+    start, points = sheet.start(-1), sheet.points(-1)
+    place, drawn = points[rim, :2], sheet.values(-1, "draw_in")[0][rim]
+    for axis in (AXES.index(name) for name in springback.symmetry(start, points) if name in AXES):
+        # The border on the plane is no rim.
+        kept = (np.abs(place[:, axis]) > springback.ROUND_OFF * np.ptp(points[:, axis])) | (drawn != 0)
+        image = place[kept] * np.where(np.arange(2) == axis, -1.0, 1.0)
+        place, drawn = np.concatenate([place[kept], image]), np.tile(drawn[kept], 2)
+    return place, drawn
 
 
 @doing("checking draw.dat by the program")
