@@ -10,7 +10,7 @@
 # A run that leaves files which git shows, or files fort.* anywhere, has a failed test `files_left`.
 #
 # JOBS=<n> sets the number of parallel tests and compilers (default: the number of cores). Unless OMP_NUM_THREADS is set,
-# they share the cores: with more threads than cores the optimised program takes several times as long.
+# they share the cores: more threads of the optimised program than cores wait for one another.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 case ${1:-} in

@@ -89,7 +89,7 @@ contains
       row("W028", "unusual compliance of a tool", &
           "It lies above 0.01 mm/MPa: the tool deflects by 1 mm at 100 MPa.", &
           "Check `compliance`, mm/MPa, against the geometry of the tool."), &
-      row("W029", "plane of symmetry that material, gravity or tools do not have", &
+      row("W029", "plane of symmetry to which the model is not symmetric", &
           "A side of the sheet is held along its normal, as on a plane of symmetry, but the "// &
           "flow stresses of the material, gravity, or a tool that reaches it and moves, turns "// &
           "or tilts across it are not symmetric to it: the result is not that of a part of the "// &

@@ -31,7 +31,7 @@ contains
     type(model_t), intent(in) :: model
     type(message_list_t), intent(inout) :: warnings
 
-    character(len=:), allocatable :: unlike_tool
+    character(len=:), allocatable :: motion
     real(wp) :: difference
     integer :: axis, i, k, node, t
 
@@ -46,34 +46,33 @@ contains
         difference = unlikeness(model, i, axis)
         if (difference > unlike) call add("material '"//case%material(i)%source%called()// &
             "' with the rolling direction "//direction_text(model%axes(:, 1, i))// &
-            ": flow stresses on its two sides would differ by up to "// &
+            " is not symmetric to it: flow stresses on its two sides would differ by up to "// &
             to_text(100.0_wp*difference, 2)//" %")
       end do
       do i = 1, size(case%phase)
         associate (gravity => case%phase(i)%gravity)
           if (case%phase(i)%has_gravity .and. across(gravity, axis)) call add("gravity of phase '" &
-              //case%phase(i)%source%called()//"', "//to_text(gravity(axis), 4)// &
-              " mm/s2 along "//axis_name(axis))
+              //case%phase(i)%source%called()//"' has "//to_text(gravity(axis), 4)// &
+              " mm/s2 along its normal")
         end associate
       end do
       do t = 1, size(model%tool)
         if (.not. reaches(model, t, axis, model%x0(axis, node))) cycle
-        unlike_tool = motion_across(case, t, axis)
-        if (len(unlike_tool) > 0) call add("tool '"//model%tool(t)%name// &
-            "', which reaches it and "//unlike_tool)
+        motion = motion_across(case, t, axis)
+        if (len(motion) > 0) call add("tool '"//model%tool(t)%name//"', which reaches it, "//motion)
       end do
     end do
 
   contains
 
-    subroutine add(what)
-      !> What is not symmetric to the plane.
-      character(len=*), intent(in) :: what
+    subroutine add(reason)
+      !> What is not symmetric to the plane, "it".
+      character(len=*), intent(in) :: reason
 
       call warnings%add_new("W029", "fix = "//axis_name(axis)//" of '"// &
           case%boundary(k)%source%called()//"': the side "//axis_name(axis)//" = "// &
-          to_text(model%x0(axis, node), 4)//" is held like a plane of symmetry, which is none "// &
-          "of "//what//"; compute the whole sheet, unless this is another support", &
+          to_text(model%x0(axis, node), 4)//" is held like a plane of symmetry, but "//reason// &
+          "; compute the whole sheet, unless this is another support", &
           case%boundary(k)%source%at("fix"))
     end subroutine add
 

@@ -54,7 +54,6 @@ contains
 
     real(wp) :: base(3, 2), column(3, 2, grid%n_column)
     real(wp), allocatable :: mapped(:, :)
-    type(mirror_t), allocatable :: mirror(:)
     integer :: k
 
     associate (bottom => sheet%x(:, grid%node(0, :)), &
@@ -72,9 +71,8 @@ contains
       return
     end if
     plane = sheet%mesh%x(:2, grid%node(0, :))
-    mirror = mirrors_of(grid, column(:, 1, :), plane)
     do k = 1, size(curve)
-      call map_curve(grid, column, plane, mirror, curve(k), spec, mapped, errors)
+      call map_curve(grid, column, plane, curve(k), spec, mapped, errors)
       call new_loop(loop(k), mapped)
     end do
   end subroutine project_curves
@@ -130,54 +128,23 @@ contains
     end do
   end function mirrors_of
 
-  !> Map the mirror image of a point that lies beyond planes of symmetry, and mirror the result.
-  pure subroutine map_image(grid, column, plane, mirror, near, point, mapped, distance)
-    type(grid_t), intent(in) :: grid
-    real(wp), intent(in) :: column(:, :, :), plane(:, :)
-    type(mirror_t), intent(in) :: mirror(:)
-    !> Distance of an image that is near the sheet, mm.
-    real(wp), intent(in) :: near, point(3)
-    !> Unchanged for a point that is not beyond a plane, or whose image is not near the sheet, and
-    !> farther.
-    real(wp), intent(inout) :: mapped(2), distance
-
-    real(wp) :: image(3), place(2), off
-    logical :: beyond(size(mirror))
-    integer :: i
-
-    image = point
-    do i = 1, size(mirror)
-      associate (one => mirror(i))
-        beyond(i) = (image(one%axis) < one%now) .eqv. one%above
-        if (beyond(i)) image(one%axis) = 2.0_wp*one%now - image(one%axis)
-      end associate
-    end do
-    if (.not. any(beyond)) return
-    call map_point(grid, column, plane, image, place, off)
-    if (off > max(distance, near)) return
-    do i = 1, size(mirror)
-      if (beyond(i)) place(mirror(i)%axis) = 2.0_wp*mirror(i)%initial - place(mirror(i)%axis)
-    end do
-    mapped = place
-    distance = off
-  end subroutine map_image
-
   !> Map a curve on the initial sheet.
-  subroutine map_curve(grid, column, plane, mirror, curve, spec, mapped, errors)
+  subroutine map_curve(grid, column, plane, curve, spec, mapped, errors)
     type(grid_t), intent(in) :: grid
     !> Columns: the middle and the vector from there to the top, `(3, 2, n_column)`; their positions
     !> on the initial sheet, `(2, n_column)`; mm.
     real(wp), intent(in) :: column(:, :, :), plane(:, :)
-    type(mirror_t), intent(in) :: mirror(:)
     type(curve_t), intent(in) :: curve
     type(trim_spec_t), intent(in) :: spec
     !> `(2, n)`, mm.
     real(wp), allocatable, intent(out) :: mapped(:, :)
     type(error_list_t), intent(inout) :: errors
 
+    type(mirror_t), allocatable :: mirror(:)
     real(wp) :: step, distance, largest, point(3)
     integer :: i, j, k, n, total
 
+    mirror = mirrors_of(grid, column(:, 1, :), plane)
     step = mean_length(grid, plane)
     n = size(curve%point, 2)
     total = 0
@@ -194,7 +161,7 @@ contains
           point = from + (real(j - 1, wp)/real(parts(i), wp))*(to - from)
         end associate
         call map_point(grid, column, plane, point, mapped(:, k), distance)
-        call map_image(grid, column, plane, mirror, spacing*step, point, mapped(:, k), distance)
+        call map_image(point, mapped(:, k), distance)
         largest = max(largest, distance)
       end do
     end do
@@ -204,6 +171,33 @@ contains
         "projection in cut '"//spec%name//"' (along)", code="E153")
 
   contains
+
+    !> Map a point that lies beyond planes of symmetry by its mirror image, if that is near the
+    !> sheet or not farther from it.
+    pure subroutine map_image(point, mapped, distance)
+      real(wp), intent(in) :: point(3)
+      real(wp), intent(inout) :: mapped(2), distance
+
+      real(wp) :: image(3), place(2), off
+      logical :: beyond(size(mirror))
+      integer :: i
+
+      image = point
+      do i = 1, size(mirror)
+        associate (one => mirror(i))
+          beyond(i) = (image(one%axis) < one%now) .eqv. one%above
+          if (beyond(i)) image(one%axis) = 2.0_wp*one%now - image(one%axis)
+        end associate
+      end do
+      if (.not. any(beyond)) return
+      call map_point(grid, column, plane, image, place, off)
+      if (off > max(distance, spacing*step)) return
+      do i = 1, size(mirror)
+        if (beyond(i)) place(mirror(i)%axis) = 2.0_wp*mirror(i)%initial - place(mirror(i)%axis)
+      end do
+      mapped = place
+      distance = off
+    end subroutine map_image
 
     !> Return the number of parts of a segment.
     pure integer function parts(i)

@@ -14,10 +14,11 @@ from scipy.spatial import cKDTree
 from dd3.errors import Problem
 from dd3.run import read_frame
 from dd3.sheet import Sheet
+from dd3.tools.beads import Beads, Line
 from dd3.tools.set_files import draw_in_of
 from dd3.tools.symmetry import mirrored
 
-TRAY = {"levels": 0, "holder": 19300}  # N on the whole
+HOLDER = 19300  # its force on the whole, N
 
 
 @pytest.fixture(scope="module")
@@ -64,7 +65,7 @@ def drawn(program, folder, divisions, part):
     trimmed and free sheet."""
     for name in ("draw", "trim"):
         words = [program, "--quiet", "--threads", "1", folder / f"{name}.dat"]
-        settings = {"levels": 0, "divisions": divisions, "holder": TRAY["holder"] * part} if name == "draw" else {}
+        settings = {"levels": 0, "divisions": divisions, "holder": HOLDER * part} if name == "draw" else {}
         for key, value in settings.items():
             words[1:1] = ["--set", f"{key}={value}"]
         done = subprocess.run(words, capture_output=True, text=True, check=False)
@@ -100,6 +101,14 @@ def test_quarter_of_tray(parts, tmp_path, program):
     nearest = cKDTree(of_part[0]).query(place)
     assert max(nearest[0].max(), np.abs(of_part[1][nearest[1]] - draw_in).max()) < 0.02 * draw_in.max()
     assert np.ptp(cut, axis=0) * [2, 2, 1] == pytest.approx(np.ptp(sheet, axis=0), abs=0.2)
+
+
+def test_beads():
+    """Check that a half has the beads on its side and those across the plane, with the numbers of the whole."""
+    lines = [Line(np.array(points, float), 5.0) for points in (
+        [[-50, 15], [-50, -15]], [[-20, -40], [20, -40]], [[50, -15], [50, 15]])]
+    for axes, kept in (((), "123"), ((0,), "23"), ((1,), "13"), ((0, 1), "3")):
+        assert re.findall(r"bead_(\d)", Beads(lines).blocks(axes)) == list(kept)
 
 
 def test_refused(parts, tmp_path):

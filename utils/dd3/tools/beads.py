@@ -5,7 +5,7 @@ rest, and which are straight. A corner restrains the sheet by the compression of
 The draw-in is that of the estimate of the blank in one step, or of a finished run. The beads are round ones; restraint
 and uplift are those of the path of the sheet through them (bead_path.py).
 """
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -65,11 +65,13 @@ class Beads:
     radius: float = 0.0
     reason: str = ""
 
-    def blocks(self) -> str:
-        """Return the blocks of the input file."""
+    def blocks(self, axes: Sequence[int] = ()) -> str:
+        """Return the blocks of the input file; of those beads that come to the positive side of planes through 0 normal
+        to axes."""
         return "".join(BLOCK.format(name=f"bead_{number}", rise=self.radius,
                                     points="  ".join(f"{x:.5g} {y:.5g}" for x, y in bead.points))
-                       for number, bead in enumerate(self.lines, 1))
+                       for number, bead in enumerate(self.lines, 1)
+                       if (bead.points[:, list(axes)] > 0).all(axis=1).any())
 
     def said(self) -> list[tuple[str, str]]:
         """Return the lines of the report."""

@@ -156,7 +156,7 @@ def deck(options: ToolSettings, tools: ToolSet, beads: Beads, command: str) -> s
     (low, high), divisions, levels, length = divided(options, tools)
     pressed = {name: PRESSURE * tools.area[name] for name in ("holder", "pad") if name in tools.surfaces}
     pressed |= {"pad": tools.pad_force} if "pad" in pressed and tools.pad_force else {}
-    axes = symmetry.of_whole(options)
+    axes = symmetry.ends_at(options)
     part = 0.5**len(axes)
     forces = [f"  {name} = {part * force:.3g}     # N, {force / tools.area[name]:.2g} MPa\n"
               for name, force in pressed.items()]
@@ -183,7 +183,7 @@ def deck(options: ToolSettings, tools: ToolSet, beads: Beads, command: str) -> s
                        levels=levels, smallest=length / 2**levels, travel=f"{tools.travel:.6g}", forces="".join(forces),
                        cut=CUT.format(file=BLANK) + (NORMAL if inclined else "") if tools.blank.cut else "",
                        material=set_material.text_of(options.material), name=set_material.name_of(options.material),
-                       friction=FRICTION, beads=beads.blocks(), pins=pinned(tools.pins),
+                       friction=FRICTION, beads=beads.blocks(axes), pins=pinned(tools.pins),
                        gravity=GRAVITY.format(earth=EARTH, aside=aside) if weighs else "",
                        light="  gravity = 0 0 0\n" if weighs else "", sheet=sheet,
                        tools="".join(TOOL.format(name=name, contact=CONTACT[name]) for name in tools.surfaces),
@@ -203,7 +203,7 @@ def divided(options: ToolSettings, tools: ToolSet) -> tuple[np.ndarray, list[int
     box = tools.blank.box
     if tools.blank.cut:  # that does not meet the border of the mesh
         box = box + AROUND * length * np.array([[-1.0], [1.0]])
-    axes = list(symmetry.of_whole(options))
+    axes = list(symmetry.ends_at(options))
     box[0, axes] = 0.0
     divisions = [int(np.ceil(side / length)) if axis in axes else 2 * int(np.ceil(side / length / 2))
                  for axis, side in enumerate(box[1] - box[0])]
@@ -214,7 +214,7 @@ def write_blank(options: ToolSettings, tools: ToolSet) -> None:
     """Write the outline of a blank that is cut along it, and the mesh of one that does not lie level."""
     blank, of = tools.blank, options.source
     if blank.cut:
-        outline = symmetry.mirrored(blank.outline, symmetry.of_whole(options), 0.0)
+        outline = symmetry.mirrored(blank.outline, symmetry.ends_at(options), 0.0)
         assert outline is not None  # it goes around the origin
         write_curves(options.target / BLANK, [blank.placed(outline)], f"outline of the blank of {of.name}")
     if blank.inclined:

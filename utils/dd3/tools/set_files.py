@@ -111,7 +111,7 @@ def made_set(options: ToolSettings, command: str) -> dict[str, report.Report]:
         write_set(tools, options, found, command)
         result = report.Report([f"  {'travel':<10} {tools.travel:.6g} mm",
                                 f"  {'blank':<10} {set_deck.said(options, tools.blank)}"])
-        if options.mirrors and not cannot_end(tools):
+        if options.mirrors and not only_whole(tools):
             result.add("symmetry", symmetry.said(options))
         lines, warnings = drawability.judged(tools, options.material)
         for line in [*lines, set_material.said(options.material), *set_deck.notes(options, tools),
@@ -125,8 +125,8 @@ def made_set(options: ToolSettings, command: str) -> dict[str, report.Report]:
     return reports
 
 
-def cannot_end(tools: tool_set.ToolSet) -> str:
-    """Return why the input file of a part with planes of symmetry is that of the whole part; empty if it need not."""
+def only_whole(tools: tool_set.ToolSet) -> str:
+    """Return why the input file is that of the whole part in spite of planes of symmetry; empty if it need not be."""
     if tools.pins:
         return "locating pins hold the floor"
     return "the blank lies on an inclined binder" if tools.blank.inclined else ""
@@ -134,7 +134,7 @@ def cannot_end(tools: tool_set.ToolSet) -> str:
 
 def refuse_symmetric(tools: tool_set.ToolSet, options: ToolSettings) -> None:
     """Refuse to compute a half or a quarter of a part where the input file is that of the whole part."""
-    if options.symmetric and (reason := cannot_end(tools)):
+    if options.symmetric and (reason := only_whole(tools)):
         raise Problem(f"--symmetric: {reason}, and the whole part is computed: leave the option out")
 
 

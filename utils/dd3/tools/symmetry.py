@@ -46,7 +46,7 @@ def mirrors_of(planes: Iterable[tuple[np.ndarray, float]], size: float, options:
     return tuple(sorted(found))
 
 
-def of_whole(options: ToolSettings) -> tuple[int, ...]:
+def ends_at(options: ToolSettings) -> tuple[int, ...]:
     """Return the axes normal to the planes at which the input file ends."""
     return options.mirrors if options.symmetric else ()
 

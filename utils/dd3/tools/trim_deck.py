@@ -101,7 +101,7 @@ def divided(points: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray]
 def write(options: ToolSettings, curves: Curves, height: float) -> None:
     """Write the curves of a part, where the die has it, the input file and the process; `height` is that of the part in
     the coordinates of the tools, mm."""
-    axes = symmetry.of_whole(options)
+    axes = symmetry.ends_at(options)
     kept = [symmetry.mirrored(points, axes, options.tolerance) for points in curves.points]
     write_curves(options.target / CURVES, [points + np.array([0.0, 0.0, height]) for points in kept
                                            if points is not None], options.source.name)
