@@ -83,8 +83,8 @@ contains
         if (allocated(error) .or. .not. again) exit
         if (attempt%verdict%outcome /= verdict_converged) totals%retries = totals%retries + 1
       end do
-      if (allocated(error) .or. too_late) return
-      if (attempt%verdict%outcome == verdict_converged) then
+      if (too_late) return
+      if (attempt%verdict%outcome == verdict_converged .and. .not. again) then
         call accept_increment(model, run%trial, stepper, run%committed)
         run%summary%increments = run%committed%increment
       else if (.not. allocated(error)) then
