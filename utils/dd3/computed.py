@@ -9,8 +9,8 @@ import pandas as pd
 from dd3.errors import Problem
 from dd3.measured import Measured
 from dd3.plot.force import vector
-from dd3.section import Section, in_plane
-from dd3.sheet import AXES, Sheet, plane
+from dd3.section import Section
+from dd3.sheet import AXES, Sheet, in_plane, plane
 
 
 def curve(measured: Measured, sheet: Sheet, history: pd.DataFrame, mirror: Sequence[str]

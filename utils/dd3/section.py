@@ -24,7 +24,7 @@ from dd3.command import new_parser
 from dd3.errors import Problem
 from dd3.fields import AT
 from dd3.plot.figures import new_figure, save
-from dd3.sheet import AXES, Line, Sheet, length, plane
+from dd3.sheet import AXES, Line, Sheet, in_plane, length, plane
 
 STRAIGHT = 1e-7  # curvature times length below which a wall is straight
 
@@ -55,16 +55,6 @@ class Section:
             raise Problem(f"{inside.sum()} points between {limits[0]:g} and {limits[1]:g} mm of "
                           f"{self.length0[-1]:g} mm: expected 3 or more")
         return self.now[inside]
-
-
-def in_plane(points: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """Return coordinates of points in the plane of a section: the horizontal direction and, if it lies in it, z."""
-    up = np.eye(3)[2] if abs(normal[2]) < 0.9 else np.eye(3)[1]
-    up = up - (up @ normal) * normal
-    up /= np.linalg.norm(up)
-    across = np.cross(normal, up)
-    across *= np.sign(across[np.abs(across).argmax()])
-    return np.column_stack([points @ across, points @ up])
 
 
 def direction(points: np.ndarray) -> np.ndarray:

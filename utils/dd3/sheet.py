@@ -173,3 +173,13 @@ def plane(text: str) -> tuple[np.ndarray, float]:
         return np.array([-np.sin(angle), np.cos(angle), 0.0]), 0.0
     except ValueError:
         raise Problem(f"plane '{text}': expected such as y=0, or an angle in degrees") from None
+
+
+def in_plane(points: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """Return coordinates of points in the plane of a section: the horizontal direction and, if it lies in it, z."""
+    up = np.eye(3)[2] if abs(normal[2]) < 0.9 else np.eye(3)[1]
+    up = up - (up @ normal) * normal
+    up /= np.linalg.norm(up)
+    across = np.cross(normal, up)
+    across *= np.sign(across[np.abs(across).argmax()])
+    return np.column_stack([points @ across, points @ up])

@@ -8,8 +8,7 @@ import numpy as np
 
 from dd3.alignment import kabsch
 from dd3.errors import LOG
-from dd3.section import in_plane
-from dd3.sheet import AXES, Line, Sheet, length
+from dd3.sheet import AXES, Line, Sheet, in_plane, length
 
 ROUND_OFF = 1e-9  # distance from a plane, over the size of the sheet, of nodes that supports hold there
 ENDS = 0.1, 0.9  # places along the sheet at which the rotations are compared, over its length

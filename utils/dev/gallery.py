@@ -30,8 +30,7 @@ from dd3.plot import sheet as pictures
 from dd3.plot.figures import tidy
 from dd3.programs import command, launch
 from dd3.run import read_frame, read_job
-from dd3.section import in_plane
-from dd3.sheet import Sheet, plane
+from dd3.sheet import Sheet, in_plane, plane
 from dd3.tables import read_table, totals
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -14,8 +14,8 @@ from dd3.plot import sheet as pictures
 from dd3.plot import skins
 from dd3.plot.figures import new_figure
 from dd3.report.page import Report, section_planes, table
-from dd3.section import Section, in_plane
-from dd3.sheet import plane
+from dd3.section import Section
+from dd3.sheet import in_plane, plane
 from dd3.viewer import page as interactive
 from dd3.viewer.scene import Scene
 
