@@ -14,6 +14,7 @@ import pytest
 from helpers import ROOT, call
 
 from dd3 import mesh as meshes
+from dd3.errors import Problem
 from dd3.tables import number, read_table
 
 CORNERS = meshes.NATURAL[:8]
@@ -165,7 +166,7 @@ def test_gmsh(program, tmp_path):
     gmsh.finalize()
     found = []
     for name in ("disc.geo", "disc.msh", "disc.vtk", "disc.unv"):
-        mesh = meshes.read_gmsh(tmp_path / name)
+        mesh = meshes.meshes.read_gmsh(tmp_path / name)
         meshes.renumber(mesh)
         found.append((len(mesh.nodes), len(mesh.elements)))
         meshes.turn_mirrored(mesh)
@@ -177,6 +178,23 @@ def test_gmsh(program, tmp_path):
         (tmp_path / "disc.dat").write_text(DECK.format(file="disc.inp", fixed=fixed, tip="z_max"))
         launch(program, tmp_path / "disc.dat", tmp_path / "disc.out")
     assert len(set(found)) == 1 and found[0][1] > 20, found
+
+
+@pytest.mark.parametrize("grid", ["GRID    {:>8}{cp:>8}{:8.3f}{:8.3f}{:8.3f}", "GRID,{},{cp},{},{},{}",
+                                  "GRID*   {:>16}{cp:>16}{:16.6f}{:16.6f}*\n*       {:16.6f}"])
+def test_nastran(tmp_path, grid):
+    """Check a Nastran file, and that nodes in a coordinate system of their own are refused with their line."""
+    corners = [(x, y, z) for z in (0.0, 1.0) for x, y in ((0.0, 0.0), (10.0, 0.0), (10.0, 5.0), (0.0, 5.0))]
+    cell = "CHEXA          1       1       1       2       3       4       5       6+       \n+              7       8"
+    for cp in ("", 0, 2):
+        text = "\n".join(["BEGIN BULK", *(grid.format(i, *corner, cp=cp) for i, corner in enumerate(corners, 1)), cell,
+                          "ENDDATA", ""])
+        (tmp_path / "cell.bdf").write_text(text)
+        if cp == 2:
+            with pytest.raises(Problem, match=r"cell.bdf:2: error: GRID in the coordinate system 2; expected CP = 0"):
+                meshes.read_gmsh(tmp_path / "cell.bdf")
+        else:
+            assert sorted(meshes.read_gmsh(tmp_path / "cell.bdf").nodes.values()) == sorted(corners)
 
 
 def test_merge():

@@ -14,8 +14,8 @@ Stresses and plastic strains at heights between those of the file are interpolat
 the thickness (those of the file). Stresses are in MPa, or as --units says, which is asked for where they are hardly
 those of a metal in MPa. Back-stresses start at zero. The initial blank is not known: strains and thinning count from
 the formed sheet, and *TRIM does not cut it. Node sets are z_min and z_max, the faces against and along the normals of
-the shells, for tools that touch them from below and from above, rim, and all. What of the file is not used is listed
-with its line.
+the shells, for tools that touch them from below and from above, rim, all, and hold_x, hold_xy, ... by TC of *NODE. What
+of the file is not used is listed with its line.
 
 The rolling direction is the one given (--rolling, x), turned into the sheet.
 """
@@ -31,6 +31,7 @@ from dd3.dyna.cards import LINE, TEN, Card, Reader, split
 from dd3.dyna.laws import UNITS
 from dd3.dyna.mesh import Cell, DynaMesh
 from dd3.dyna.parameters import as_number
+from dd3.dyna.shells import across, element_normals, ordered
 from dd3.errors import Problem
 from dd3.hanging import edges_of_hung, hanging_nodes
 from dd3.programs import made_folder
@@ -115,33 +116,6 @@ class Stresses:
         for i in range(at, min(after, len(card))):
             card.rows.setdefault(i)
         return values, after
-
-
-def ordered(quads: np.ndarray, bound: Bound) -> np.ndarray:
-    """Return whether each quadrilateral is turned over against the greater part of those that it is joined with."""
-    edges: dict[tuple[int, int], list[tuple[int, bool]]] = {}
-    for i, ring in enumerate(rings(quads, bound)):
-        for a, b in zip(ring, ring[1:] + ring[:1]):
-            edges.setdefault((min(a, b), max(a, b)), []).append((i, a < b))
-    neighbours: list[list[tuple[int, bool]]] = [[] for _ in quads]
-    for sides in edges.values():
-        if len(sides) == 2:
-            (i, one), (j, other) = sides
-            neighbours[i].append((j, one == other))
-            neighbours[j].append((i, one == other))
-    turned, seen = np.zeros(len(quads), bool), np.zeros(len(quads), bool)
-    for start in range(len(quads)):
-        if seen[start]:
-            continue
-        group, seen[start] = [start], True
-        for i in group:  # grows
-            for j, against in neighbours[i]:
-                if not seen[j]:
-                    seen[j], turned[j] = True, turned[i] != against
-                    group.append(j)
-        if 2 * turned[group].sum() > len(group):
-            turned[group] = ~turned[group]
-    return turned
 
 
 def thicknesses(cells: list[Cell]) -> np.ndarray:
@@ -246,7 +220,8 @@ def sheet_of(path: Path, material: Sequence[str], column: int, rolling: Sequence
         said.append(f"note: {turned.sum()} shells are numbered the other way round than the others, the first "
                     f"{cells[int(turned.argmax())].label}; they are turned over, with their heights")
         quads[turned], at_corner[turned] = quads[turned][:, ::-1], at_corner[turned][:, ::-1]
-    upper, lower = offset(path, cells, middle, quads, at_corner)
+    half = across(cells, middle, quads, at_corner) / 2
+    upper, lower = middle + half, middle - half
     levels = column or min(MOST_POINTS, max(2, max(len(rows) for rows in stress.values())))
     heights = leggauss(levels)[0]
     values = np.array([between(reversed_rows(stress[cell.label]) if back else stress[cell.label], heights)
@@ -257,11 +232,14 @@ def sheet_of(path: Path, material: Sequence[str], column: int, rolling: Sequence
         tensor[..., i, j] = tensor[..., j, i] = factor * values[..., k]
     axes = np.repeat(sheet_axes(middle, quads, rolling)[:, None], values.shape[1], axis=1)
     points = np.stack((lower, upper), axis=1).reshape(-1, 3)
+    held = held_sets(mesh.held, used)
+    said += [f"note: *NODE holds {len(nodes) // 2} nodes along {' and '.join(name[5:])} (TC): node set {name}, for "
+             "*BOUNDARY" for name, nodes in held.items()]
     said += account_of(reader)
     nodes = np.array([(node, a, b) for (a, b), node in bound.items()], int).reshape(-1, 3)
     return SheetState(points, points, np.hstack((2 * quads, 2 * quads + 1)), float(at_corner.mean()), tensor,
                       np.maximum(values[..., 6], 0.0), axes, names, material_of, levels,
-                      node_sets(quads, len(points), bound), np.concatenate((2 * nodes, 2 * nodes + 1))), said
+                      node_sets(quads, len(points), bound) | held, np.concatenate((2 * nodes, 2 * nodes + 1))), said
 
 
 def reversed_rows(rows: np.ndarray) -> np.ndarray:
@@ -288,6 +266,15 @@ def account_of(reader: Reader) -> list[str]:
     return [f"left out: {item}" for item in reader.left_out()]
 
 
+def held_sets(held: dict[int, str], used: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the sets hold_x, hold_xy, ... of the nodes of both faces that *NODE holds along these axes."""
+    sets: dict[str, list[int]] = {}
+    for i, label in enumerate(used):
+        if axes := held.get(int(label)):
+            sets.setdefault(f"hold_{axes}", []).extend((2 * i, 2 * i + 1))
+    return {name: np.array(nodes) for name, nodes in sorted(sets.items())}
+
+
 def node_sets(quads: np.ndarray, count: int, bound: Bound) -> dict[str, np.ndarray]:
     """Return the sets of nodes: all, those of the lower and of the upper face, by the names that they have on a blank,
     and those of the rim."""
@@ -296,37 +283,6 @@ def node_sets(quads: np.ndarray, count: int, bound: Bound) -> dict[str, np.ndarr
     rim = np.unique(edges[times == 1])
     number = np.arange(count)
     return {"all": number, "z_min": number[::2], "z_max": number[1::2], "rim": np.sort(np.append(2 * rim, 2 * rim + 1))}
-
-
-def offset(path: Path, cells: list[Cell], middle: np.ndarray, quads: np.ndarray, thickness: np.ndarray
-           ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the nodes of the upper and the lower face of a sheet whose thicknesses (m, 4) lie across its elements."""
-    with np.errstate(all="ignore"):
-        normal = element_normals(middle, quads)
-    if not (flat := np.isfinite(normal).all(axis=1)).all():
-        cell = cells[int(np.flatnonzero(~flat)[0])]
-        raise Problem(f"{cell.place}: error: shell {cell.label} has no area")
-    director, share, weight = np.zeros_like(middle), np.zeros(len(middle)), np.zeros(len(middle))
-    for k in range(4):
-        np.add.at(director, quads[:, k], normal)
-    length = np.linalg.norm(director, axis=1)
-    if not (length > 1e-6).all():
-        raise Problem(f"{path}: error: the normals of the shells at a node cancel each other: the sheet is folded, or "
-                      "three shells have one edge")
-    director /= length[:, None]
-    for k in range(4):
-        across = (director[quads[:, k]] * normal).sum(axis=1)
-        np.add.at(share, quads[:, k], thickness[:, k] / np.maximum(across, 0.5))
-        np.add.at(weight, quads[:, k], 1.0)
-    half = 0.5 * (share / weight)[:, None] * director
-    return middle + half, middle - half
-
-
-def element_normals(middle: np.ndarray, quads: np.ndarray) -> np.ndarray:
-    """Return the unit normals of quadrilaterals."""
-    a, b, c, d = (middle[quads[:, k]] for k in range(4))
-    normal = np.cross(c - a, d - b)
-    return np.asarray(normal / np.linalg.norm(normal, axis=1)[:, None])
 
 
 def sheet_axes(middle: np.ndarray, quads: np.ndarray, rolling: Sequence[float]) -> np.ndarray:

@@ -5,10 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dd3.bound import Bound
 from dd3.dyna.cards import Row
 from dd3.dyna.deck import SHELL, Deck
 from dd3.dyna.laws import Units
 from dd3.dyna.mesh import Cell, Part
+from dd3.dyna.shells import across, ordered
 from dd3.errors import Problem
 from dd3.hanging import edges_of_hung, hanging_nodes
 from dd3.mesh import Mesh, renumber, turn_mirrored
@@ -22,7 +24,8 @@ class Blank:
     """The mesh with the labels of the deck, its mean normal, thickness, points, and the element.
 
     upper: the label of the node above each node of a shell; empty for solids. axes: the first edge and the normal of
-    the first element; bent: the largest angle from it to the first edge of another, degrees.
+    the first element; bent: the largest angle from it to the first edge of another, degrees. asked: points through the
+    thickness in the deck, 0 for none.
     """
 
     mesh: Mesh
@@ -33,6 +36,7 @@ class Blank:
     upper: dict[int, int]
     axes: np.ndarray
     bent: float
+    asked: int = 0
 
     @property
     def size(self) -> float:
@@ -52,9 +56,11 @@ def blank_of(deck: Deck, part: Part, units: Units) -> Blank:
                       f"(part {part.number}) are no {'quadrilaterals' if corners == 4 else 'hexahedra'}; mesh it with "
                       "these alone")
     nodes = {label: np.array(deck.nodes[label]) * units.length for cell in part.cells for label in cell.nodes}
-    bound = bound_labels(deck, part, nodes)
-    blank = of_shells(deck, part, nodes, units) if corners == 4 else of_solids(deck, part, nodes)
-    blank.mesh.bound = bound + [tuple(blank.upper[label] for label in labels) for labels in bound]
+    bound = bound_nodes(deck, part, nodes)
+    blank = of_shells(deck, part, nodes, bound, units) if corners == 4 else of_solids(deck, part, nodes)
+    labels = list(nodes)
+    below = [(labels[node], labels[a], labels[b]) for (a, b), node in bound.items()]
+    blank.mesh.bound = below + [tuple(blank.upper[label] for label in three) for three in below]
     edges = np.array([nodes[cell.nodes[1]] - nodes[cell.nodes[0]] for cell in part.cells])
     edges /= np.maximum(np.linalg.norm(edges, axis=1), 1e-300)[:, None]
     first = blank.axes[0] / max(float(np.linalg.norm(blank.axes[0])), 1e-300)
@@ -62,8 +68,8 @@ def blank_of(deck: Deck, part: Part, units: Units) -> Blank:
     return blank
 
 
-def bound_labels(deck: Deck, part: Part, nodes: dict[int, np.ndarray]) -> list[tuple[int, ...]]:
-    """Return the nodes of shells that *CONSTRAINED_ADAPTIVITY binds, each with the ends of its edge; raise a Problem at
+def bound_nodes(deck: Deck, part: Part, nodes: dict[int, np.ndarray]) -> Bound:
+    """Return the nodes of shells that *CONSTRAINED_ADAPTIVITY binds, by their order in `nodes`; raise a Problem at
     another node of one element on the edge or the face of another: nothing would bind them."""
     labels = list(nodes)
     index = {label: i for i, label in enumerate(labels)}
@@ -77,49 +83,54 @@ def bound_labels(deck: Deck, part: Part, nodes: dict[int, np.ndarray]) -> list[t
         raise Problem(f"{cell.place}: error: node {node} lies on an edge or a face of element {cell.label} that does "
                       f"not have it ({len(found)} such nodes): the sheet would tear there; mesh the blank with "
                       "elements that share all their nodes, or bind it by *CONSTRAINED_ADAPTIVITY")
-    return [(labels[node], labels[a], labels[b]) for (a, b), node in bound.items()]
+    return bound
 
 
-def face_normals(cells: list[tuple[int, ...]], nodes: dict[int, np.ndarray]) -> np.ndarray:
-    """Return the normals of quadrilaterals, their areas as lengths."""
-    points = np.array([[nodes[label] for label in cell[:4]] for cell in cells])
-    return np.cross(points[:, 2] - points[:, 0], points[:, 3] - points[:, 1]) / 2
-
-
-def of_shells(deck: Deck, part: Part, nodes: dict[int, np.ndarray], units: Units) -> Blank:
+def of_shells(deck: Deck, part: Part, nodes: dict[int, np.ndarray], bound: Bound, units: Units) -> Blank:
     """Return the blank of shells."""
-    cells = [cell.nodes for cell in part.cells]
+    labels, points = list(nodes), np.array(list(nodes.values()))
+    index = {label: i for i, label in enumerate(labels)}
+    quads = np.array([[index[label] for label in cell.nodes] for cell in part.cells])
     first_row, row = deck.section(part, "*SECTION_SHELL", SHELL)
     use_section(first_row)
     thickness = uniform_thickness(row, part.cells) * units.length
     if not thickness > 0:
         raise Problem(f"{row.place}: error: a shell thickness of {thickness:g} mm; expected a number > 0")
-    normals = face_normals(cells, nodes)
-    if not np.all(np.linalg.norm(normals, axis=1) > 0):
+    areas = np.cross(points[quads[:, 2]] - points[quads[:, 0]], points[quads[:, 3]] - points[quads[:, 1]]) / 2
+    sizes = np.linalg.norm(areas, axis=1)
+    if not np.all(sizes > 0):
         raise Problem(f"{part.place}: error: a shell of the blank, part {part.number}, has no area")
-    mean = normals.sum(axis=0)
-    if not np.linalg.norm(mean) > 0:
+    mean = np.where(ordered(quads, bound)[:, None], -areas, areas).sum(axis=0)
+    if not np.linalg.norm(mean) > 1e-9 * sizes.sum():
         raise Problem(f"{part.place}: error: the normals of the shells of part {part.number} cancel each other")
     upward = upright(mean)
-    axes = np.array([nodes[cells[0][1]] - nodes[cells[0][0]], normals[0] / np.linalg.norm(normals[0])])
-    turned = normals @ upward < 0
-    normals[turned] *= -1
-    sums: dict[int, np.ndarray] = {}
-    for cell, normal in zip(cells, normals):
-        for label in cell:
-            sums[label] = sums.get(label, 0.0) + normal
+    axes = np.array([points[quads[0, 1]] - points[quads[0, 0]], areas[0] / sizes[0]])
+    turned = ordered(quads, bound, areas @ upward)
+    middle = surface_place(row, turned)
+    quads[turned] = quads[turned][:, ::-1]
+    over = across(part.cells, points, quads, np.full(quads.shape, thickness))
     first, mesh = max(nodes), Mesh()
-    middle = -float(np.clip(row.number("NLOC"), -1, 1)) * thickness / 2  # of the shell, from its reference surface
-    for label, normal in sums.items():
-        along = normal / np.linalg.norm(normal)
+    for i, label in enumerate(labels):
         for side, name in ((-0.5, label), (0.5, label + first)):
-            mesh.nodes[name] = tuple((nodes[label] + (middle + side * thickness) * along).tolist())
-    for i, (cell, back) in enumerate(zip(cells, turned), 1):
-        ring = list(cell[::-1] if back else cell)
+            mesh.nodes[name] = tuple((points[i] + (middle + side) * over[i]).tolist())
+    for i, quad in enumerate(quads, 1):
+        ring = [labels[node] for node in quad]
         mesh.elements[i] = ring + [label + first for label in ring]
-    points = first_row.label("NIP")
-    return Blank(mesh, upward, thickness, min(points, MOST_POINTS) if points >= 5 else POINTS,
-                 "solid_shell", {label: label + first for label in sums}, axes, 0.0)
+    asked = first_row.label("NIP")
+    return Blank(mesh, upward, thickness, min(asked, MOST_POINTS) if asked >= 5 else POINTS, "solid_shell",
+                 {label: label + first for label in labels}, axes, 0.0, asked)
+
+
+def surface_place(row: Row, turned: np.ndarray) -> float:
+    """Return the distance of the middle of the sheet from the nodes of the shells, upwards, over the thickness: NLOC
+    counts along the normal that each shell has in the deck."""
+    place = row.number("NLOC")
+    if not -1 <= place <= 1:
+        raise Problem(f"{row.place}: error: NLOC = {place:g}; expected -1 to 1")
+    if place and turned.any() and not turned.all():
+        raise Problem(f"{row.place}: error: NLOC = {place:g}, but {turned.sum()} of the {len(turned)} shells of the "
+                      "blank are numbered the other way round than the others; number all of them in one way")
+    return place / 2 if turned.any() else -place / 2
 
 
 def use_section(row: Row) -> None:
@@ -130,12 +141,12 @@ def use_section(row: Row) -> None:
 
 
 def uniform_thickness(row: Row, cells: list[Cell]) -> float:
-    """Return the thickness of shells by their section, or the one that all of them have by *ELEMENT_SHELL_THICKNESS."""
+    """Return the one thickness of shells: by *ELEMENT_SHELL_THICKNESS, where it is 0 or not given by their section."""
     first, *others = row.numbers("T1 T2 T3 T4")
-    given = ({value for cell in cells for value in cell.thickness if value}
-             or {value for value in (first, *others) if value})
+    section = first, *(value or first for value in others)
+    given = {value or own for cell in cells for value, own in zip(cell.thickness or (0.0,) * 4, section)}
     if len(given) > 1 and max(given) - min(given) > 1e-6 * max(given):
-        raise Problem(f"{row.place}: error: shells of {min(given):g} to {max(given):g} thick; the blank has one "
+        raise Problem(f"{row.place}: error: shells {min(given):g} to {max(given):g} thick; the blank has one "
                       "thickness")
     return next(iter(given), 0.0)
 

@@ -184,7 +184,11 @@ class Card:
 
     def first(self, i: int) -> int:
         """Return the whole number in the first field of a row, 0 where there is none."""
-        return self.whole(i, split(self.lines[i][1], TEN, self.least)[0]) if i < len(self.lines) else 0
+        return self.whole(i, self.field(i, 0)) if i < len(self.lines) else 0
+
+    def field(self, i: int, k: int) -> str:
+        """Return the word in a field of a row."""
+        return split(self.lines[i][1], TEN, self.least)[k]
 
     def whole(self, i: int, word: str) -> int:
         """Return the whole number of a word in a row, 0 for none."""

@@ -23,7 +23,7 @@ from dd3.account import LeftOut
 from dd3.command import new_parser
 from dd3.dyna.blank import Blank, blank_of, with_sets
 from dd3.dyna.damage import take_fracture
-from dd3.dyna.deck import Deck, Drive
+from dd3.dyna.deck import SHELL, Deck, Drive
 from dd3.dyna.laws import UNITS, Law, Units, law_of, number_of, units_of, use_rigid
 from dd3.dyna.mesh import Part
 from dd3.dyna.phases import AT_ONCE, EARTH, Names, Phases, numbers
@@ -38,6 +38,8 @@ from dd3.tools.surface import write
 
 RIGID = 20
 SEW = 2e-3  # distance up to which free edges of a tool are joined, mm: deck writers round coordinates
+SECTION = "*SECTION_SHELL"
+LONGEST_NAME = 40  # of a tool
 BENT = 2.0  # angle between first edges of elements, degrees, from which a note tells of it
 
 
@@ -49,6 +51,7 @@ class Tool:
     name: str
     friction: float
     above: bool
+    cover: float = 0.0  # distance of its contact surface from its nodes, towards the sheet, mm
 
 
 class Import:
@@ -63,6 +66,9 @@ class Import:
         self.law: Law = law_of(deck, self.material, self.units, self.blank.axes)
         take_fracture(deck, self.part.material, self.law)
         self.notes = [*deck.notes, *self.law.notes]
+        if self.blank.asked not in (0, self.blank.points):
+            self.notes.append(f"blank, part {self.part.number}: NIP = {self.blank.asked}: {self.blank.points} points "
+                              "through the thickness")
         if self.blank.bent > BENT and any("AOPT = 0" in note for note in self.law.notes):
             self.notes.append(f"rolling direction: the first edges of the elements differ by up to "
                               f"{self.blank.bent:.3g} degrees; LS-DYNA follows each, here the first one counts")
@@ -88,10 +94,12 @@ class Import:
 
     def find_tools(self) -> list[Tool]:
         """Return the tools: rigid parts in contact with the blank, joined where one follows another."""
-        pairs, friction = self.deck.pairs(), dict[int, float]()
+        pairs, friction, covers = self.deck.pairs(), dict[int, float](), dict[int, float]()
         for pair in pairs:
-            for one, other in (pair.sides, pair.sides[::-1]):
+            for k, (one, other) in enumerate((pair.sides, pair.sides[::-1])):
                 for number in other if self.part.number in one else ():
+                    if pair.covers:
+                        covers[number] = max(covers.get(number, 0.0), self.cover(number, *pair.covers[1 - k]))
                     if friction.setdefault(number, pair.friction) != pair.friction:
                         self.notes.append(f"{pair.place}: another friction of part {number}; the larger one is taken")
                         friction[number] = max(friction[number], pair.friction)
@@ -110,20 +118,42 @@ class Import:
                           + self.deck.unread("*CONTACT"))
         if not pairs:
             self.notes.append("no contact is defined: all rigid parts are tools, without friction")
-        found, names = [], set[str]()
+        found = list[Tool]()
         for root, parts in groups.items():
             leader = next((part for part in parts if part.number == root), parts[0])
-            name = set_name(leader.title or f"tool_{leader.number}")
-            name = f"{name}_{leader.number}" if name in names or name == "load" else name
-            names.add(name)
-            for part in parts:
-                use_rigid(self.deck.material(part))
-                self.use_section(part)
-            values = [friction.get(part.number, 0.0) for part in parts]
-            if len(set(values)) > 1:
-                self.notes.append(f"tool {name}: frictions {values}; the largest is taken")
-            found.append(Tool([part.number for part in parts], name, max(values), self.is_above(parts)))
+            name = set_name(leader.title or f"tool_{leader.number}")[:LONGEST_NAME]
+            if name == "load" or name in [tool.name for tool in found]:
+                name = f"{name}_{leader.number}"
+            found.append(self.tool_of(parts, name, [friction.get(part.number, 0.0) for part in parts],
+                                      max(covers.get(part.number, 0.0) for part in parts)))
         return found
+
+    def tool_of(self, parts: list[Part], name: str, frictions: list[float], cover: float) -> Tool:
+        """Return the tool of parts; tell of what they do not have in common, and of where its surface lies."""
+        for part in parts:
+            use_rigid(self.deck.material(part))
+            self.use_section(part)
+        numbers_of_parts = [part.number for part in parts]
+        if len(set(frictions)) > 1:
+            self.notes.append(f"tool {name}: frictions {frictions}; the largest is taken")
+        if len({self.is_above([part]) for part in parts}) > 1:
+            self.notes.append(f"tool {name}: its parts {' and '.join(map(str, numbers_of_parts))} lie on both sides of "
+                              "the sheet, of which a tool touches one")
+        if cover:
+            self.notes.append(f"tool {name}: an AUTOMATIC contact acts at the faces of its shells, {cover:g} mm, half "
+                              "their thickness, from their nodes")
+        return Tool(numbers_of_parts, name, max(frictions), self.is_above(parts), cover)
+
+    def cover(self, number: int, given: float, factor: float) -> float:
+        """Return how far the contact surface of a part of shells lies from its nodes, mm: half of the thickness that
+        the contact gives, or of that of the part, times a factor."""
+        part = self.deck.parts.get(number)
+        if not part or number == self.part.number or not any(cell.dimension == 2 for cell in part.cells):
+            return 0.0
+        own = max((value for cell in part.cells for value in cell.thickness), default=0.0)
+        if not own and part.section in self.deck.sections and self.deck.sections[part.section][0].keyword == SECTION:
+            own = self.deck.section(part, SECTION, SHELL)[1].number("T1")
+        return (given or own) * factor / 2 * self.units.length
 
     def root(self, number: int) -> int:
         """Return the rigid part that a part follows."""
@@ -172,7 +202,9 @@ class Import:
         if not any(stage.moving or stage.forces or stage.gravity for stage in found):
             raise Problem(f"{self.deck.path}: no tool moves and none is pressed: expected "
                           "*BOUNDARY_PRESCRIBED_MOTION_RIGID or *LOAD_RIGID_BODY of a tool"
-                          + self.deck.unread("*BOUNDARY_PRESCRIBED") + self.deck.unread("*LOAD"))
+                          + "".join(f"; {text}" for text in self.deck.no_drives[:3])
+                          + self.deck.unread("*BOUNDARY_PRESCRIBED") + self.deck.unread("*LOAD")
+                          + self.deck.unread("*CONTACT"))
         return found
 
     def check_gravity(self) -> None:
@@ -230,10 +262,11 @@ class Import:
                      "--toward", *numbers(toward).split()]
             for number in tool.parts:
                 words += ["--part", str(number)]
-            words += ["--sew", f"{SEW:g}"]
+            words += ["--sew", f"{SEW:g}", *(["--offset", f"{tool.cover:g}"] if tool.cover else [])]
             target = folder / f"{tool.name}.bez"
             surface, _, result = made(ToolSettings(self.deck.path, target, toward.tolist(), self.units.length, sew=SEW,
-                                                   tolerance=1000.0, part=[str(number) for number in tool.parts]))
+                                                   offset=tool.cover, tolerance=1000.0,
+                                                   part=[str(number) for number in tool.parts]))
             if result.errors:
                 raise Problem(f"tool {tool.name}: {'; '.join(result.errors)}; alone: dd3 tool {' '.join(words)}")
             write(target, surface, [f"{self.deck.path.name}: dd3 tool {' '.join(words[2:])}"])
@@ -340,11 +373,15 @@ class Import:
         return phases.lines
 
     def tool_points(self, number: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return the nodes of a tool and the centre of its area, mm."""
+        """Return the nodes of a tool and its centre, mm: that of *PART_INERTIA, else of its area."""
         cells = [cell.nodes for part in self.tools[number].parts for cell in self.deck.parts[part].cells]
         corners = np.array([[self.deck.nodes[label] for label in (*cell, *cell[-1:] * 4)[:4]] for cell in cells])
         area = np.linalg.norm(np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]), axis=1)
         centre = np.average(corners.mean(axis=1), axis=0, weights=area) if area.sum() > 0 else corners.mean(axis=(0, 1))
+        inertia = self.deck.parts[self.root(self.tools[number].parts[0])].inertia
+        if inertia:
+            node = inertia.label("NODEID")
+            centre = np.array(self.deck.nodes[node] if node in self.deck.nodes else inertia.numbers("XC YC ZC"))
         return corners.reshape(-1, 3) * self.units.length, centre * self.units.length
 
 

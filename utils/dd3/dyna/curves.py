@@ -98,16 +98,17 @@ class Curves:
         return least[1]
 
     def rows(self, number: int) -> list[tuple[float, int, Row]]:
-        """Return the rates of a table, the numbers of their curves and their rows."""
+        """Return the rates of a table with their scale and offset, the numbers of their curves and their rows."""
         card, behind = self.tables[number]
         head = card.row(0, "TBID SFA OFFA")
-        head.numbers("TBID SFA OFFA")
+        head.label("TBID")
+        scale, shift = head.number("SFA", 1.0) or 1.0, head.number("OFFA")
         if len(card.filled()) < 2:
             raise Problem(f"{card.place}: error: a table without rows")
         rates = []
         for i in card.filled()[1:]:
             row = card.row(i, "VALUE LCID", POINT)
-            rates.append((row.number("VALUE"), row.label("LCID"), row))
+            rates.append((scale * (row.number("VALUE") + shift), row.label("LCID"), row))
         if card.keyword == "*DEFINE_TABLE" and not any(label for _, label, _ in rates):
             if len(behind) < len(rates):
                 raise Problem(f"{card.place}: error: a table of {len(rates)} values and {len(behind)} curves behind it")

@@ -51,6 +51,12 @@ CONTACT_MORE = ("SOFT SOFSCL=0.1 LCIDAB MAXPAR=1.025 SBOPT=2 DEPTH=2 BSORT FRCFR
                 "PENMAX THKOPT SHLTHK SNLOG ISYM I2D3D SLDTHK SLDSTF",
                 "IGAP=1 IGNORE DPRFAC DTSTIF EDGEK unused FLANGL CID_RCF",
                 "Q2TRI DTPCHK SFNBR FNLSCL DNLSCL TCSO TIEDID SHLEDG")
+# Options of a contact with rows of their own behind the third one: the number of these, and why they are left out.
+OPTION_ROWS = (("THERMAL", 1, "no heat flows between sheet and tools"),
+               ("THERMAL_FRICTION", 1, "friction does not depend on the temperature"),
+               ("ORTHO_FRICTION", 2, "friction is the same in all directions"))
+TIED = "TIED", "TIEBREAK", "SPOTWELD"
+SELF = "*CONTACT_AUTOMATIC_SINGLE_SURFACE", "*CONTACT_AUTOMATIC_GENERAL"  # of all its parts with one another
 BEAD = "LCIDRF LCIDNF DBDTH DFSCL NUMINT DBPID ELOFF NBEAD"
 MOTION = "PID DOF VAD LCID SF VID DEATH BIRTH"
 FORCE = "PID DOF LCID SF CID M1 M2 M3"
@@ -60,11 +66,16 @@ ALWAYS = "a contact acts from the start to the end; `release` withdraws a tool"
 
 @dataclass
 class Pair:
-    """Two sides of a contact, parts by number, its friction and place."""
+    """Two sides of a contact, parts by number, its friction and place.
+
+    covers: where the contact acts at the faces of shells, the thickness that the contact gives to each side (0: that of
+    the shells) and the factor of it; None where it acts at their nodes.
+    """
 
     sides: tuple[set[int], set[int]]
     friction: float
     place: str
+    covers: tuple[tuple[float, float], tuple[float, float]] | None = None
 
 
 @dataclass
@@ -136,6 +147,7 @@ class Deck:
         self.contacts: list[Card] = []
         self.beads: list[Card] = []
         self.drives: list[Drive] = []
+        self.no_drives: list[str] = []  # motions and forces that are left out
         self.supports: list[Card] = []
         self.gravity: list[Gravity] = []
         self.damages: list[Card] = []  # fracture that is added to a material
@@ -144,7 +156,8 @@ class Deck:
         self.notes = [*moves, *(f"{place}: a second *PARAMETER {name}; the first holds, as in LS-DYNA"
                       for place, name in reader.parameters.twice)]
         self.title, self.end_time, self.springback = "", 0.0, False
-        for card in reader.cards:
+        # Motions name vectors, which may stand behind them.
+        for card in sorted(reader.cards, key=lambda card: card.keyword != "*DEFINE_VECTOR"):
             self.take(card)
         if not self.mesh.cells:
             raise Problem(f"{path}: no shells and no solids" + self.unread("*ELEMENT"))
@@ -176,8 +189,14 @@ class Deck:
             card.leave("nothing here uses its material")
         elif word.startswith("*MAT_") and not word.startswith("*MAT_ADD"):
             self.take_material(card)
+        elif word.startswith("*CONTACT_") and set(word.split("_")) & set(TIED):
+            card.leave("a bond between surfaces is not available")
         elif word.startswith("*CONTACT_") and ("SURFACE_TO_SURFACE" in word or "NODES_TO_SURFACE" in word):
             self.contacts.append(card)
+        elif word in SELF:
+            self.contacts.append(card)
+            self.notes.append(f"{card.place}: {word}: the contact of the blank with tools; the sheet does not touch "
+                              "itself here")
         elif not self.sets.take(card) and not self.curves.take(card):
             card.leave(next((why for beginning, why in REASONS if word.startswith(beginning)), "not read"))
 
@@ -201,12 +220,21 @@ class Deck:
         card.ignore()
 
     def take_sections(self, card: Card) -> None:
-        """Take sections: of shells two rows each."""
-        rows = card.filled() if card.keyword == "*SECTION_SOLID" else range(0, len(card), 2)
-        for i in rows:
-            number = card.first(i)
+        """Take sections: of shells two rows each, and of layers with angles these; with TITLE each has its own."""
+        shells, i = card.keyword == "*SECTION_SHELL", 0
+        while i < len(card):
+            if not card.lines[i][1].strip() and not shells:
+                i += 1
+                continue
+            number, (points, angles) = card.first(i), (card.whole(i, card.field(i, k)) for k in (3, 6))
             self.once("*SECTION", self.sections, number, card.place_of(i))
             self.sections[number] = card, i
+            i += 1 + shells
+            if angles == 1 and card.keyword != "*SECTION_SOLID":
+                i += -(-points // 8)
+            if "TITLE" in card.options and i < len(card):
+                card.rows.setdefault(i)
+                i += 1
 
     def once(self, kind: str, there: dict, number: int, place: str) -> None:
         """Raise a Problem at a second definition of a number."""
@@ -258,7 +286,7 @@ class Deck:
             more = [next(rows, None)] if abs(dof) in (9, 10, 11) or vad == 4 else []
             card.rows |= {k: None for k in (*more, next(rows, None) if "ID" in card.options else None) if k is not None}
             if dof not in (1, 2, 3, 4, 5, 6, 7, 8) or vad not in (0, 2):
-                row.drop(f"motion of kind DOF = {dof}, VAD = {vad}")
+                self.drop_drive(row, f"motion of kind DOF = {dof}, VAD = {vad}")
                 continue
             direction = (self.vector(row.label("VID"), row.place) if dof in (4, 8)
                          else np.eye(3)[dof - (5 if dof > 4 else 1)])
@@ -272,10 +300,15 @@ class Deck:
             row = card.row(i, FORCE)
             dof, axes = row.label("DOF"), row.label("CID")
             if dof not in (1, 2, 3) or axes:
-                row.drop(f"force of kind DOF = {dof}" + (f" in the axes {axes}" if axes else ""))
+                self.drop_drive(row, f"force of kind DOF = {dof}" + (f" in the axes {axes}" if axes else ""))
                 continue
             self.drives.append(Drive(row.label("PID"), np.eye(3)[dof - 1], "force", row.label("LCID"),
                                      row.number("SF", 1.0) or 1.0, row.place, of_set=card.keyword == "*LOAD_NODE_SET"))
+
+    def drop_drive(self, row: Row, why: str) -> None:
+        """Leave out a motion or a force."""
+        row.drop(why)
+        self.no_drives.append(f"{row.place}: {why}: left out")
 
     def take_gravity(self, card: Card) -> None:
         """Take an acceleration of the base: the body force acts against it."""
@@ -308,7 +341,7 @@ class Deck:
             raise Problem(f"{part.place}: error: part {part.number} has no {keyword} {part.section}"
                           + self.unread("*SECTION"))
         card, i = self.sections[part.section]
-        return [card.row(i + k, name) for k, name in enumerate(names)]
+        return [card.optional(i + k, name) for k, name in enumerate(names)]
 
     def material(self, part: Part) -> Card:
         """Return the material of a part."""
@@ -352,8 +385,8 @@ class Deck:
         for card in self.contacts:
             row, second = card.row(0, CONTACT[0]), card.optional(1, CONTACT[1])
             row.leave("forces are in history.csv", "SAPR SBPR")
-            sides = (self.of_parts(row.label("SURFA"), row.label("SURFATYP"), row.place),
-                     self.of_parts(row.label("SURFB"), row.label("SURFBTYP"), row.place))
+            one = self.of_parts(row.label("SURFA"), row.label("SURFATYP"), row.place)
+            other = one if card.keyword in SELF else self.of_parts(row.label("SURFB"), row.label("SURFBTYP"), row.place)
             friction = second.number("FS")
             if not 0 <= friction < 2:
                 raise Problem(f"{second.place}: error: a friction of {friction:g}; expected 0 to 2")
@@ -368,10 +401,15 @@ class Deck:
                 second.entry.read.add("DT")
             else:
                 second.entry.read.discard("DT")
-            for i, names in enumerate((CONTACT[2], *CONTACT_MORE), 2):
+            covers = None
+            if "AUTOMATIC" in card.keyword:
+                third = card.optional(2, CONTACT[2])
+                covers = ((third.number("SAST"), third.number("SFSAT", 1.0) or 1.0),
+                          (third.number("SBST"), third.number("SFSBT", 1.0) or 1.0))
+            for i, (names, why) in enumerate(contact_rows(card.keyword), 2):
                 if i < len(card):
-                    card.row(i, names).leave(PENALTY)
-            found.append(Pair(sides, friction, card.place))
+                    card.row(i, names).leave(why)
+            found.append(Pair((one, other), friction, card.place, covers))
         return found
 
     def fixes(self) -> list[Fix]:
@@ -417,6 +455,12 @@ class Deck:
                               "available; divide the bead")
             found.append(Bead(nodes, curve, last.number("DFSCL", 1.0) or 1.0, abs(last.label("LCIDNF")), card.place))
         return found
+
+
+def contact_rows(keyword: str) -> list[tuple[str, str]]:
+    """Return the names of the fields of a contact in its rows from the third on, and why they are left out."""
+    own = [("", why) for option, count, why in OPTION_ROWS if option in keyword for _ in range(count)]
+    return [(CONTACT[2], PENALTY), *own, *((names, PENALTY) for names in CONTACT_MORE)]
 
 
 KNOWN: dict[str, Callable[[Deck, Card], None]] = {

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Nodes, elements and parts of an LS-DYNA keyword file."""
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
-from dd3.dyna.cards import Card, Reader, split, unread
+from dd3.dyna.cards import Card, Reader, Row, split, unread
 from dd3.dyna.parameters import plain
 from dd3.errors import Problem
 
@@ -48,6 +48,7 @@ class Part:
     material: int
     place: str
     cells: list[Cell] = field(default_factory=list)
+    inertia: Row | None = None  # with the centre of a rigid part
 
 
 class DynaMesh:
@@ -201,13 +202,15 @@ class DynaMesh:
             card.rows.setdefault(i)
             i += 2
             for option, names in rows:
-                i = self.take_options(card, i, option, names)
+                i = self.take_options(card, i, option, names, self.parts[number])
 
-    def take_options(self, card: Card, i: int, option: str, names: tuple[str, ...]) -> int:
+    def take_options(self, card: Card, i: int, option: str, names: tuple[str, ...], part: Part) -> int:
         """Take the rows of an option of a part; return the row behind them."""
         local = False
         for name in names:
             row = card.row(i, name)
+            if "XC" in name:
+                part.inertia = row
             row.leave(NO_INERTIA if option == "INERTIA" else "not used")
             local = local or ("IRCS" in name and row.label("IRCS") == 1)
             i += 1
@@ -228,9 +231,16 @@ class DynaMesh:
                 raise Problem(f"{cell.place}: error: node {missing[0]} of element {cell.label} has no coordinates")
             self.parts[cell.part].cells.append(cell)
 
-    def shift(self, number: int, by: np.ndarray) -> None:
-        """Displace the nodes of a part."""
-        for label in {label for cell in self.parts[number].cells for label in cell.nodes}:
+    def displace(self, moves: Mapping[int, np.ndarray]) -> None:
+        """Displace the nodes of parts by number; a node of several parts once."""
+        of_node: dict[int, tuple[int, np.ndarray]] = {}
+        for number, by in moves.items():
+            for label in {label for cell in self.parts[number].cells for label in cell.nodes}:
+                first, known = of_node.setdefault(label, (number, by))
+                if not np.allclose(known, by, atol=1e-9 * (1.0 + np.abs(by).max())):
+                    raise Problem(f"{self.parts[number].place}: error: node {label} belongs to the parts {first} and "
+                                  f"{number}, which are displaced before the start by {known} and {by}")
+        for label, (_, by) in of_node.items():
             self.nodes[label] = tuple((np.array(self.nodes[label]) + by).tolist())
 
 

@@ -19,8 +19,15 @@ NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD]?[+-]\d+|[eEdD]\d+)?", re
 LONGEST = 2000  # characters of an expression
 LARGEST = 1e300
 REDEFINED = (2, 4)  # values of DFLAG with which a second definition holds
+
+
+def nearest(value: Value) -> int:
+    """Return the nearest whole number, as Fortran does: halves go away from zero."""
+    return math.trunc(value + math.copysign(0.5, value))
+
+
 FUNCTIONS: dict[str, Callable[..., Value]] = {
-    "abs": abs, "aint": lambda x: float(math.trunc(x)), "nint": round, "anint": lambda x: float(round(x)),
+    "abs": abs, "aint": lambda x: float(math.trunc(x)), "nint": nearest, "anint": lambda x: float(nearest(x)),
     "int": math.trunc, "floor": math.floor, "ceil": math.ceil, "float": float, "mod": math.fmod,
     "sign": math.copysign, "max": max, "min": min, "sqrt": math.sqrt, "exp": math.exp, "log": math.log,
     "log10": math.log10, "sin": math.sin, "cos": math.cos, "tan": math.tan, "asin": math.asin, "acos": math.acos,
@@ -101,7 +108,7 @@ def plain(text: str, values: Mapping[str, Value | str], place: str) -> Value:
 
 def evaluate(text: str, values: Mapping[str, Value | str], place: str) -> Value:
     """Return the value of an expression."""
-    words = re.sub(r"(?<=[\d.])[dD](?=[+-]?\d)", "e", text.replace("&", " "))
+    words = re.sub(r"(?<![\w.])(\d+\.?\d*|\.\d+)[dD](?=[+-]?\d)", r"\1e", text.replace("&", " "))
     try:
         if len(words) > LONGEST:
             raise ValueError("it is too long")

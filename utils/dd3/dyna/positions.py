@@ -41,12 +41,16 @@ def placed_mesh(reader: Reader) -> tuple[DynaMesh, list[str]]:
 
 
 class Positions:
-    """The displacements; `of_parts` gives the parts of a number, of kind 2 a set, of kind 3 a part, with a place."""
+    """The displacements; `of_parts` gives the parts of a number, of kind 2 a set, of kind 3 a part, with a place.
+
+    `moves` are the displacements of the parts by number, `waiting` those that *PART_MOVE has still to make.
+    """
 
     def __init__(self, mesh: DynaMesh, of_parts: Callable[[int, int, str], set[int]]) -> None:
         self.mesh, self.of_parts = mesh, of_parts
         self.found: dict[str, float] = {}  # by name of the parameter
-        self.waiting: dict[int, np.ndarray] = {}  # displacements of parts that *PART_MOVE has still to make
+        self.moves: dict[int, np.ndarray] = {}
+        self.waiting: dict[int, np.ndarray] = {}
         self.notes: list[str] = []
 
     def apply(self, auto: list[Card], moves: list[Card]) -> None:
@@ -58,6 +62,7 @@ class Positions:
         for card in moves:
             for i in card.filled():
                 self.move(card, i)
+        self.mesh.displace(self.moves)
 
     @staticmethod
     def words(card: Card, i: int) -> list[str]:
@@ -85,8 +90,7 @@ class Positions:
                 self.waiting[part] = self.waiting.get(part, np.zeros(3)) + move
             what = f"&{name.lower()} = {by:.6g}"
         else:
-            for part in parts:
-                self.mesh.shift(part, move)
+            self.add(parts, move)
             what = f"moved by {by:.6g} along {'xyz'[axis - 1]}"
         self.notes.append(f"{row.place}: {card.keyword}: part {', '.join(map(str, sorted(parts)))}: {what}"
                           + (f", {gap:g} from part {other} where they are nearest" if other else ""))
@@ -109,9 +113,14 @@ class Positions:
             word = row.word(name)
             value = self.found.get(word.lstrip("-").strip("& ").upper()) if "&" in word else None
             by.append(row.number(name) if value is None else -value if word.startswith("-") else value)
+        self.add(parts, np.array(by))
         for part in parts:
-            self.mesh.shift(part, np.array(by))
             self.waiting.pop(part, None)
+
+    def add(self, parts: Iterable[int], by: np.ndarray) -> None:
+        """Displace parts further."""
+        for part in parts:
+            self.moves[part] = self.moves.get(part, np.zeros(3)) + by
 
     def displacement(self, parts: set[int], beside: set[int], axis: int, side: int, gap: float) -> float:
         """Return how far parts are to be displaced along an axis to be above (1) or below (-1) others."""
@@ -126,7 +135,7 @@ class Positions:
         """Return the corners of the facets of parts as triangles (n, 3, 3)."""
         found = []
         for part in parts:
-            shift = self.waiting.get(part, np.zeros(3))
+            shift = self.moves.get(part, np.zeros(3)) + self.waiting.get(part, np.zeros(3))
             for cell in self.mesh.parts[part].cells:
                 corners = [np.array(self.mesh.nodes[label]) + shift for label in cell.nodes]
                 found += [(corners[0], corners[k], corners[k + 1]) for k in range(1, len(corners) - 1)]
