@@ -5,7 +5,11 @@ module dd3_mesh_mesh
   use dd3_base_text, only : same_name
   implicit none
   private
-  public :: mark_directions, mesh_t, mesh_set_t, element_set_t
+  public :: mark_directions, mesh_t, mesh_set_t, element_set_t, unmoved
+
+  !> Placement of a sheet that lies where it was made.
+  real(wp), parameter :: unmoved(3, 4) = reshape([real(wp) :: 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0], &
+      [3, 4])
 
   !> A named list of nodes.
   type :: mesh_set_t
@@ -35,6 +39,9 @@ module dd3_mesh_mesh
     integer, allocatable :: material(:)
     !> Thickness of a structured blank, mm; 0 for a mesh from a file, which may vary.
     real(wp) :: thickness = 0.0_wp
+    !> Rotation and displacement (mm) that have brought the initial sheet to its place, without its
+    !> deformation.
+    real(wp) :: placement(3, 4) = unmoved
     !> Number of refinements that have made the mesh.
     integer :: mesh_number = 0
     !> Number of nodes before the first of them, which come first; not used without.

@@ -5,6 +5,7 @@ module dd3_model_mesh_data
   use dd3_base_kinds, only : wp
   use dd3_base_threads, only : least_points, threads_for
   use dd3_element_table, only : element_t
+  use dd3_mesh_mesh, only : unmoved
   use dd3_model_part, only : part_t
   use dd3_model_sheet_faces, only : sheet_faces_t
   use dd3_model_terms_load_sets, only : load_set_t, pressure_set_t
@@ -64,7 +65,10 @@ module dd3_model_mesh_data
     !> Other end of a fibre through the thickness of an element at each node, `(n_node)`; 0 for a
     !> node in the middle of an edge.
     integer, allocatable :: fibre_end(:)
-    !> Initial inward unit normals of the rim, `(3, n_node)`; zero for a node elsewhere.
+    !> Rotation and displacement (mm) that brought the initial sheet to its place, see `mesh_t`.
+    real(wp) :: placement(3, 4) = unmoved
+    !> Inward unit normals of the rim of the initial sheet in its place, `(3, n_node)`; zero for a
+    !> node elsewhere.
     real(wp), allocatable :: rim_normal(:, :)
     type(tolerances_t) :: tolerance
     !> Degrees of freedom held in every phase, `(3, n_node)`.

@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Rim of the sheet, the boundary faces between its lower and upper face without those on planes of
-!> symmetry, and the draw-in: displacement of the rim along its initial inward normal.
+!> symmetry, and the draw-in: displacement of the rim along its initial inward normal, without that
+!> by which *START has brought the sheet to its place.
 module dd3_model_rim
   use dd3_base_kinds, only : wp
   use dd3_model_model, only : model_t
@@ -28,7 +29,8 @@ contains
       on_rim(f) = is_side(model, f) .and. &
           .not. any([(is_on_symmetry_plane(model, f, axis), axis=1, 3)])
     end do
-    model%rim_normal = -mean_normals(model%face, pack([(f, f=1, size(on_rim))], on_rim), model%x0)
+    model%rim_normal = -matmul(model%placement(:, :3), &
+        mean_normals(model%face, pack([(f, f=1, size(on_rim))], on_rim), model%x0))
   end subroutine set_rim
 
   !> Whether a boundary face lies between the lower and the upper face of the sheet.
@@ -51,10 +53,17 @@ contains
     !> 1, 2, 3.
     integer, intent(in) :: axis
 
-    associate (area => area_vector(model%x0(:, model%face%corner(:, f))))
-      is_on = is_side(model, f) .and. all(model%fixed(axis, model%face%node(:, f))) .and. &
-          abs(area(axis)) > along_axis*norm2(area)
-    end associate
+    real(wp) :: area(3)
+
+    is_on = is_side(model, f)
+    if (is_on) is_on = all(model%fixed(axis, model%face%node(:, f)))
+    if (.not. is_on) return
+    if (allocated(model%x_start)) then
+      area = area_vector(model%x_start(:, model%face%corner(:, f)))
+    else
+      area = area_vector(model%x0(:, model%face%corner(:, f)))
+    end if
+    is_on = abs(area(axis)) > along_axis*norm2(area)
   end function is_on_symmetry_plane
 
   !> Return the draw-in of the nodes, `(n_node)`, mm; zero for a node that is not on the rim.
@@ -64,7 +73,12 @@ contains
     real(wp), intent(in) :: x(:, :)
     real(wp), allocatable :: value(:)
 
-    value = sum((x - model%x0)*model%rim_normal, dim=1)
+    integer :: i
+
+    allocate (value(size(x, 2)))
+    do i = 1, size(value)
+      value(i) = dot_product(x(:, i) - placed(model, i), model%rim_normal(:, i))
+    end do
   end function draw_in
 
   !> Return the mean draw-in of the nodes of a set that lie on the rim, mm.
@@ -81,11 +95,20 @@ contains
     do i = 1, size(node)
       associate (direction => model%rim_normal(:, node(i)))
         if (norm2(direction) <= 0.0_wp) cycle
-        mean_draw_in = mean_draw_in + dot_product(direction, x(:, node(i)) - model%x0(:, node(i)))
+        mean_draw_in = mean_draw_in + dot_product(direction, x(:, node(i)) - placed(model, node(i)))
       end associate
       n = n + 1
     end do
     mean_draw_in = mean_draw_in/real(max(1, n), wp)
   end function mean_draw_in
+
+  !> Return the position that a node would have without deformation, mm.
+  pure function placed(model, node)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: node
+    real(wp) :: placed(3)
+
+    placed = matmul(model%placement(:, :3), model%x0(:, node)) + model%placement(:, 4)
+  end function placed
 
 end module dd3_model_rim

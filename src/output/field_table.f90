@@ -127,7 +127,8 @@ contains
           fill_thinning), &
       strain_rows(), &
       row("draw_in", at_nodes, 1, "mm", &
-          "displacement of the rim along its initial inward normal; 0 elsewhere", fill_draw_in), &
+          "displacement of the rim along its initial inward normal, without that of *START; "// &
+          "0 elsewhere", fill_draw_in), &
       row("contact_pressure", at_nodes, 1, "MPa", &
           "normal force of the tools over the tributary area of the node", &
           fill_contact_pressure), &

@@ -169,7 +169,7 @@ contains
     type(writer_t), intent(inout) :: writer
 
     integer :: sizes(n_sizes)
-    real(wp) :: thickness(1)
+    real(wp) :: thickness(1), placement(3, 4)
     real(wp), allocatable :: x0(:, :)
     integer, allocatable :: connectivity(:, :), material_of(:), digest(:)
     character(len=:), allocatable :: materials
@@ -185,6 +185,8 @@ contains
     call writer%integers("sizes", n_sizes, sizes)
     call writer%reals("x0", size(x0), x0)
     call writer%reals("thickness", 1, thickness)
+    placement = model%placement
+    call writer%reals("placement", size(placement), placement)
     call writer%integers("connectivity", size(connectivity), connectivity)
     call visit_refinement(model, writer)
     call writer%integers("material_of", size(material_of), material_of)

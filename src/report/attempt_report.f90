@@ -178,8 +178,8 @@ contains
       message = message//"did not converge"
       if (attempt%number > 1) message = message//" in "//to_text(attempt%number)//" attempts"
       message = message//": "//reason(model, attempt)
-      if (verdict%element > 0) message = message//", element "//to_text(verdict%element) &
-          //" point "//to_text(verdict%point)
+      if (verdict%element > 0) message = message//", element "//to_text(verdict%element)
+      if (verdict%point > 0) message = message//" point "//to_text(verdict%point)
       if (verdict%node == 0) return
       message = message//", "//place_of_node(model, committed, verdict%node)
       c = model%candidate_of(verdict%node)

@@ -273,12 +273,16 @@ contains
     character(len=:), allocatable :: text
 
     real(wp) :: increase(model%n_element)
-    integer :: e
+    integer :: e, t
 
     text = ""
     if (.not. (has_released(state%term) .or. state%sheet%fades)) return
     associate (phase => model%phase(state%phase))
       if (phase%control > 0 .or. any(phase%pressed .or. phase%withdrawn)) return
+      if (any(abs(phase%move) > 0.0_wp) .or. any(phase%gap_other > 0) &
+          .or. any([(phase%turns(t), t=1, model%n_tool)])) return
+      if (any(abs(phase%displacement) > 0.0_wp) .or. size(phase%motion) > 0 &
+          .or. .not. (all(phase%loads%keeps) .and. all(phase%pressures%keeps))) return
     end associate
     increase = 0.0_wp
     increase(model%part%element) = &

@@ -117,6 +117,7 @@ contains
     model%n_element = mesh%n_element
     model%x0 = mesh%x
     model%connectivity = mesh%connectivity
+    model%placement = mesh%placement
     model%mesh_number = mesh%mesh_number
     model%n_first_node = merge(mesh%n_first_node, mesh%n_node, mesh%mesh_number > 0)
     allocate (model%set(size(mesh%set)))

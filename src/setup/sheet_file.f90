@@ -117,7 +117,7 @@ contains
 
     integer(hid_t) :: group
     real(wp) :: thickness(1)
-    integer :: status
+    integer :: n, status
 
     associate (mesh => sheet%mesh)
       mesh%n_node = sizes(at_node)
@@ -132,6 +132,9 @@ contains
       call read_block(file, "mesh/x0", size(mesh%x), mesh%x, ok)
       call read_reals(file, "mesh/thickness", thickness, ok)
       mesh%thickness = thickness(1)
+      ! The files of other programs and of earlier versions have none.
+      call dataset_size(file, "mesh/placement", n)
+      if (n >= 0) call read_block(file, "mesh/placement", 12, mesh%placement, ok)
       call read_integer_block(file, "mesh/connectivity", size(mesh%connectivity), &
           mesh%connectivity, ok)
       call read_refinement(file, mesh, ok)

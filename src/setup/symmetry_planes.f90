@@ -32,10 +32,12 @@ contains
     type(message_list_t), intent(inout) :: warnings
 
     character(len=:), allocatable :: motion
+    real(wp), allocatable :: x(:, :)
     real(wp) :: difference
     integer :: axis, i, k, node, t
 
     if (size(case%boundary) == 0) return
+    x = model%start_positions()
     do axis = 1, 3
       k = support_along(case, axis)
       node = node_on_plane(model, axis)
@@ -57,7 +59,7 @@ contains
         end associate
       end do
       do t = 1, size(model%tool)
-        if (.not. reaches(model, t, axis, model%x0(axis, node))) cycle
+        if (.not. reaches(model, t, axis, x(axis, node))) cycle
         motion = motion_across(case, t, axis)
         if (len(motion) > 0) call add("tool '"//model%tool(t)%name//"', which reaches it, "//motion)
       end do
@@ -71,7 +73,7 @@ contains
 
       call warnings%add_new("W029", "fix = "//axis_name(axis)//" of '"// &
           case%boundary(k)%source%called()//"': the side "//axis_name(axis)//" = "// &
-          to_text(model%x0(axis, node), 4)//" is held like a plane of symmetry, but "//reason// &
+          to_text(x(axis, node), 4)//" is held like a plane of symmetry, but "//reason// &
           "; compute the whole sheet, unless this is another support", &
           case%boundary(k)%source%at("fix"))
     end subroutine add

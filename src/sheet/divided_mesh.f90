@@ -32,6 +32,7 @@ contains
       quad(grid%element(:, q)) = q
     end do
     mesh%thickness = old%thickness
+    mesh%placement = old%placement
     mesh%n_node = old%n_node + (grid%n_layer + 1)*(division%n_column - grid%n_column)
     call number_nodes(old%n_node, grid, division, node)
     call set_parents(mesh%n_node, node, division, origin)

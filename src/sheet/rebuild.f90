@@ -59,6 +59,7 @@ contains
     new%report = sheet%report
     new%warnings = sheet%warnings
     new%mesh%thickness = sheet%mesh%thickness
+    new%mesh%placement = sheet%mesh%placement
     new%mesh%mesh_number = sheet%mesh%mesh_number
     call move_nodes(sheet%mesh%x, cut, place, moved, node, new%mesh%n_node, new%mesh%x)
     call move_nodes(sheet%x, cut, place, moved, node, new%mesh%n_node, new%x)

@@ -71,6 +71,11 @@ contains
       rotation = rotation_about(turn(4:6, i)/norm2(turn(4:6, i)), degree*turn(7, i))
       self%x = spread(centre, 2, size(self%x, 2)) &
           + matmul(rotation, self%x - spread(centre, 2, size(self%x, 2)))
+      associate (placement => self%mesh%placement)
+        placement(:, 4) = placement(:, 4) - centre
+        placement = matmul(rotation, placement)
+        placement(:, 4) = placement(:, 4) + centre
+      end associate
       if (.not. self%has_state) cycle
       do e = 1, size(self%orientation, 4)
         do p = 1, size(self%orientation, 3)
@@ -79,6 +84,7 @@ contains
       end do
     end do
     self%x = self%x + spread(move, 2, size(self%x, 2))
+    self%mesh%placement(:, 4) = self%mesh%placement(:, 4) + move
   end subroutine place
 
 end module dd3_sheet_sheet

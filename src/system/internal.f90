@@ -9,7 +9,8 @@ module dd3_system_internal
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : sum_over_ranks
   use dd3_base_threads, only : least_points, threads_for
-  use dd3_base_verdict, only : verdict_t, verdict_converged
+  use dd3_base_verdict, only : cause_inverted, verdict_t, verdict_converged, verdict_retry
+  use dd3_element_table, only : element_t
   use dd3_element_work, only : element_work_t
   use dd3_linalg_matrix, only : add_element, clear, copy_values
   use dd3_model_configuration, only : configuration_t
@@ -21,6 +22,9 @@ module dd3_system_internal
   implicit none
   private
   public :: update_material, assemble_stiffness, evaluate_fading
+
+  !> Length of a column over the initial one up to which its nodes count as one place.
+  real(wp), parameter :: flat = 1.0e-3_wp
 
 contains
 
@@ -173,6 +177,7 @@ contains
       work%enhanced(:) = trial%sheet%enhanced(:, e)
       work%x_initial(:, :) = model%x0(:, nodes)
       call element%deform(element, committed%sheet%orientation(:, :, :, e), work, verdict)
+      if (verdict%outcome == verdict_converged) call check_columns(element, work, verdict)
       verdict%element = number
       if (verdict%outcome /= verdict_converged) return
       do p = 1, model%element%n_point
@@ -193,6 +198,28 @@ contains
       call element%evaluate_force(element, work)
     end associate
   end subroutine update_element
+
+  !> Retry if two nodes of a column of an element have come to one place, where the points inside
+  !> the element still have a volume.
+  pure subroutine check_columns(element, work, verdict)
+    type(element_t), intent(in) :: element
+    !> Holds the initial and the trial positions.
+    type(element_work_t), intent(in) :: work
+    type(verdict_t), intent(inout) :: verdict
+
+    integer :: k
+
+    do k = 1, element%n_pair
+      associate (bottom => element%pair(1, k), top => element%pair(2, k))
+        if (norm2(work%x_trial(:, top) - work%x_trial(:, bottom)) &
+            > flat*norm2(work%x_initial(:, top) - work%x_initial(:, bottom))) cycle
+      end associate
+      verdict%outcome = verdict_retry
+      verdict%cause = cause_inverted
+      verdict%point = 0
+      return
+    end do
+  end subroutine check_columns
 
   !> Return the stresses that the forces of an element belong to: those of its points less what is
   !> left of fading ones, in the material frame, Kelvin, `(6, n_point)`, MPa.

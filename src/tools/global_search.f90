@@ -124,7 +124,8 @@ contains
       end do
       do
         i = minloc(near, dim=1)
-        if (near(i) > min(radius, best + margin) + margin) exit
+        ! Also where the position of the node is not a number.
+        if (.not. near(i) <= min(radius, best + margin) + margin) exit
         near(i) = huge(1.0_wp)
         call examine_place(surface, query, first + i - 1, min(radius, best + margin), candidate, &
             tie)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-#: {"name": "operations", "arguments": ["--only", "released", "carried", "refined", "cut_bend", "dynain", "restruck",
+#: {"name": "operations", "arguments": ["--only", "released", "placed", "carried", "refined", "cut_bend", "dynain", "restruck",
 #:  "refused"], "timeout": 900}
 #: {"name": "operations_more", "arguments": ["--only", "turned", "cut_wall", "cut_on_sheet", "cut_by_elements"],
 #:  "labels": ["case", "slow"], "timeout": 900, "cost": 50}
@@ -11,6 +11,8 @@
 - released: a strip drawn in one run and released in another has the shape of the strip that one run draws and releases
   but for the friction of the tools that are withdrawn there, within 1 % of the springback; the same where it is moved and
   turned between the two.
+- placed: the draw-in of a sheet that is pressed in two operations does not depend on where it is placed between them, nor
+  is a plastic strain that a prescribed displacement makes taken for one of fading forces.
 - turned: a bent strip that is turned about an oblique axis is released as the one that is not: equal shape and strains.
 - carried: a bent strip of a material with two surfaces, back-stress, rate, temperature, damage and forming limit keeps
   all internal variables where it is taken over; released, they are those of the strip that is turned.
@@ -156,6 +158,33 @@ def released(bench):
                            0.01 * springback, absolute=True),
                      Value(f"{name}: distance from the sheet where it was, mm", 0, distance(found, first), 1e-4,
                            absolute=True))
+
+
+def placed(bench):
+    """Press a sheet along x in three operations, with turns and displacements between them."""
+    def deck(start, axis, by):
+        across = "y" if axis == "x" else "x"
+        return (f"{start}{MATERIAL}" + "".join(f"*BOUNDARY {name}\n  set = {name}\n  fix = {fix}\n" for name, fix in
+                                               (("x_min", axis), ("y_min", across), ("z_min", "z")))
+                + f"*PHASE press\n  control = load\n  trial = 0.1\n  displace = x_max {axis} {by}\n"
+                "*HISTORY edge\n  set = x_max\n  quantities = draw_in\n")
+
+    bench.run("flat", deck("*BLANK sheet\n  size = 10 10 1\n  divisions = 2 2 1\n  material = mild_steel\n", "x", -0.5))
+    values = []
+    for number, (first, axis, by, second, to, way) in enumerate((
+            ("", "x", -0.5, "", "x", -0.25), ("  move = 20 3 0\n", "x", -0.5, "  move = -8 1 2\n", "x", -0.25),
+            ("  turn = 1 2 3  0 0 1  90\n", "y", -0.5, "  turn = -4 0 0  0 0 1  90\n  move = 0 5 0\n", "x", 0.25))):
+        once = bench.run(f"placed_{number}", deck(f"*START\n  from = flat.out\n{first}", axis, by))
+        again = bench.run(f"again_{number}", deck(f"*START\n  from = placed_{number}.out\n{second}", to, way))
+        for run in (once, again):
+            check("W106" not in {message["code"] for message in run.job["warnings"]}, "placed: W106")
+        fields = dd3.open(again.folder).fields[-1].point_data["draw_in"]
+        values.append((once.last("edge_draw_in"), again.last("edge_draw_in"),
+                       float(np.max(fields))))
+    names = "draw-in, mm", "draw-in of the next operation, mm", "largest draw-in, mm"
+    check_values(*(Value(f"placed {number}: {name}", expected, found, 1e-6) for number, line in enumerate(values[1:], 1)
+                   for name, expected, found in zip(names, values[0], line)),
+                 Value("placed: largest draw-in, mm", 1.25, values[0][2], 1e-6))
 
 
 def turned(bench):
@@ -381,7 +410,7 @@ def refused(bench):
     bench.run("unended_last", start.format("unended.out\n  at = last") + UNLOAD, codes=(0,))
 
 
-TESTS = (released, turned, carried, refined, cut_wall, cut_bend, cut_on_sheet, cut_by_elements, dynain, restruck,
+TESTS = (released, placed, turned, carried, refined, cut_wall, cut_bend, cut_on_sheet, cut_by_elements, dynain, restruck,
          refused)
 
 
