@@ -240,7 +240,7 @@ def main():
         return lambda: test(runner, fresh(work / "_".join([test.__name__, *arguments[:1]])), *arguments)
 
     tests = [(f"from increments, {name}", call(from_increments, name, options.every))
-             for name in ("each", "motions", "bead", "tilt", "fallback", "increments")]
+             for name in ("each", "motions", "bead", "tilt", "umfpack", "increments")]
     tests += [(f"from increments, {name}", call(from_increments, name, 3 * options.every))
               for name in ("solid_shell", "laws")]
     tests += [(test.__doc__.split(":")[0].rstrip("."), call(test))

@@ -87,8 +87,8 @@ def prepared(path: Path, mesh: Triangles, mirror: Sequence[int], least: float = 
     triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
     # Two slivers on one side whose far corners became one node lie upon each other.
     _, same, count = np.unique(np.sort(triangles, axis=1), axis=0, return_inverse=True, return_counts=True)
-    triangles = triangles[count[same.ravel()] == 1]
-    triangles = turned_alike(triangles)
+    used, corner = np.unique(triangles[count[same.ravel()] == 1], return_inverse=True)
+    nodes, triangles = nodes[used], turned_alike(corner.reshape(-1, 3))
     pieces, _ = connected_components(pairs_matrix(np.vstack((triangles[:, :2], triangles[:, 1:])), len(nodes)),
                                      directed=False)
     if pieces > 1:

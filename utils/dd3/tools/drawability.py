@@ -91,7 +91,7 @@ def judged(tools: "ToolSet", material: Path | None) -> tuple[list[tuple[str, str
             warnings.append(f"likely to split: thinning of {found}. Larger radii there, less depth, or two strokes")
     if tools.ratio > RATIO:
         warnings.append(
-            f"the drawing ratio, the root of the area of the blank over that of the punch, is {tools.ratio:.3g}: mild "
+            f"the drawing ratio, the root of the area of the blank over that of the punch, is {tools.ratio:.2f}: mild "
             f"steel is drawn in one stroke up to about {RATIO:g}. Take a smaller --margin or --shoulder, or draw it in "
             "two strokes")
     if tools.ratio and (pan := tools.inner_pan):

@@ -11,8 +11,9 @@ from scipy.spatial import cKDTree
 from dd3.errors import Problem
 from dd3.progress import doing
 from dd3.tools.drawability import thinnest
+from dd3.tools.joints import box_of
 from dd3.tools.plane import crosses, inside
-from dd3.tools.surface import Surface, areas_at, grid, points_at
+from dd3.tools.surface import Surface, areas_at, points_at
 from dd3.triangles import Triangles, area_vectors, prepared, rims
 from dd3.unfold import Balance, Sheet, unfolded
 
@@ -26,8 +27,8 @@ EXPONENT = 0.5
 NEAR = 0.1
 # Largest distance of the simplified outline from the outline, over the margin.
 SIMPLE = 0.1
-# Points along each side of a patch at which its area is taken.
-SAMPLES = 5
+# Gauss points along each side of a patch at which its area is taken.
+SAMPLES = 4
 # Step of the grid on which the distance from the outline is taken, over the margin.
 STEP = 0.2
 # Part of the area of its box above which an outline is not cut: the box is the blank.
@@ -84,15 +85,24 @@ class Blank:
         plan = points - np.outer((points - middle) @ across * (1.0 - self.normal[2]), across)
         return np.column_stack([plan, plan @ self.slope + self.height])
 
-    def within(self, box: np.ndarray) -> "Blank":
-        """Return the part of the blank in a box (2, 2)."""
+    def on(self, die: Surface, inset: float, flange: float | None) -> "Blank":
+        """Return the blank with its outline on a die less an inset, mm; a Problem where it goes beyond a flange that
+        was given: then it would be cut off there."""
+        low, high = box_of(die.net)
+        box = np.array([low[:2] + inset, high[:2] - inset])
+        over = float(max((box[0] - self.outline).max(), (self.outline - box[1]).max()))
+        if flange is not None and over > inset:
+            raise Problem(f"--flange {flange:g}: the blank reaches {over + inset:.3g} mm beyond the die; expected "
+                          f"{np.ceil(flange + over + inset):g} or more, or a smaller --margin")
         return replace(self, outline=np.clip(self.outline, *box))
 
     def pressed(self, surface: Surface) -> float:
         """Return the area in plan of the part of a surface that is over the blank, mm2."""
-        area, points = np.abs(areas_at(surface.net, *grid(SAMPLES))[..., 2]), points_at(surface.net, *grid(SAMPLES))
+        t, weight = np.polynomial.legendre.leggauss(SAMPLES)
+        u, v = (axis.ravel() for axis in np.meshgrid((1 + t) / 2, (1 + t) / 2))
+        area, points = np.abs(areas_at(surface.net, u, v)[..., 2]), points_at(surface.net, u, v)
         over = inside(points[..., :2].reshape(-1, 2), self.border).reshape(area.shape)
-        return float((area * over).sum() / SAMPLES**2)
+        return float((area * over).sum(axis=0) @ np.outer(weight, weight).ravel() / 4)
 
 
 def blank_of(path: Path, covered: Surface, thickness: float, margin: float) -> Blank:
@@ -157,7 +167,8 @@ def widened(outline: np.ndarray, margin: float) -> np.ndarray:
     low, high = fine.min(axis=0) - 2 * margin, fine.max(axis=0) + 2 * margin
     x, y = (np.arange(a, b, STEP * margin) for a, b in zip(low, high))
     grid = np.stack(np.meshgrid(x, y), axis=-1)
-    away = cKDTree(fine).query(grid.reshape(-1, 2))[0].reshape(grid.shape[:2])
+    away = cKDTree(fine).query(grid.reshape(-1, 2), distance_upper_bound=2 * margin)[0].reshape(grid.shape[:2])
+    away = np.minimum(away, 2 * margin)
     lines = contour_generator(x, y, away).lines(margin)
     around = max((np.array(line)[:-1] for line in lines), key=lambda line: abs(area_of(line)))
     around = around if area_of(around) > 0 else around[::-1]

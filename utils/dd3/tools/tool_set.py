@@ -19,7 +19,7 @@ from dd3.tools import cad, cad_mesh, drawability, no_holder, own_flange, report,
 from dd3.tools.binder import NoBinder
 from dd3.tools.die_face import INSET, Face, Reach, TooLong, consistent, estimated, even, flange, goes_around, with_face
 from dd3.tools.faces import spans
-from dd3.tools.joints import box_of, find_joints
+from dd3.tools.joints import find_joints
 from dd3.tools.limits import started
 from dd3.tools.moved import placed, rotation
 from dd3.tools.nagata import groups
@@ -28,7 +28,7 @@ from dd3.tools.pad_force import Pin, Pull, pins
 from dd3.tools.rims import Rim, border_rims, find_rims, lengths, patches, wall
 from dd3.tools.set_blank import Blank
 from dd3.tools.settings import ToolSettings
-from dd3.tools.surface import Surface, from_nodes, turned
+from dd3.tools.surface import Surface, from_nodes, grid, points_at, turned
 
 # Defaults over the thickness: clearance, radius of the shoulder, margin of the blank; smaller ones for a drawing ratio
 # that is too large with these.
@@ -46,6 +46,10 @@ MESHED = 4
 STEEP = 0.5
 # Part of the least radius below which a radius is smaller: fillets of just that radius are not.
 JUST = 0.999
+# Distance of offsets over the tolerance up to which the patches are made smaller, and the part of it they are made for.
+NEARLY, FINER = 1.5, 0.9
+# Points along each side of a patch among which its highest one is taken.
+EXTREMES = 9
 DOWN = np.array([0.0, 0.0, -1.0])
 
 
@@ -85,6 +89,7 @@ def both_sides(gmsh: Any, options: ToolSettings, progress: Any
     largest distances of their faces from the CAD by the names of the tools, mm, and the roles of the faces."""
     gap = options.thickness + options.clearance
     fine, least = copy(options), options.radius
+    fine.tolerance *= options.finer
     if options.sharp:  # an offset enlarges what the patches of the fillets are off the CAD
         fine.tolerance *= options.radius / (options.radius + gap)
         least *= JUST
@@ -152,6 +157,10 @@ def made(gmsh: Any, options: ToolSettings, progress: Any) -> ToolSet:
     options = copy(options)
     for _ in range(MESHED):
         punch, die, distance, roles = both_sides(gmsh, options, progress)
+        beyond = max(found.max() for found in distance.values()) / max(options.tolerance, options.sew or 0.0)
+        if 1.0 < beyond < NEARLY and options.finer == 1.0:  # by the offset, which enlarges the distance
+            options.finer = FINER / beyond
+            continue
         own = own_flange.labels_of(die, roles, shoulder=False)
         try:
             face = with_face(gmsh, own_flange.trimmed(die, own), options)
@@ -177,10 +186,8 @@ def made(gmsh: Any, options: ToolSettings, progress: Any) -> ToolSet:
         result.lines.append(("shoulder", f"of the part, radius {radius:.3g} mm on the die"))
     result.bend, least = (own_flange.least_radius(tool, range(len(tool.names))) for tool in (punch, face.surface))
     result.radius = min(result.shoulder, result.bend, least)
-    inset = INSET * options.thickness
-    low, high = box_of(face.surface.net)
     assert face.blank
-    result.blank = face.blank.within(np.array([low[:2] + inset, high[:2] - inset]))
+    result.blank = face.blank.on(face.surface, INSET * options.thickness, options.flange)
     top = float(report.extent(face.surface.net[face.surface.face == len(face.surface.names) - 1])[1][2])
     over = top + options.thickness
     result.height = -top
@@ -194,7 +201,7 @@ def made(gmsh: Any, options: ToolSettings, progress: Any) -> ToolSet:
         part = face.surface.select(floor)
         result.pins = pins(options.holes, part, options)
         others["die"] = face.surface.select(~floor), -top
-        others["pad"] = part, -float(report.extent(part.net)[1][2])
+        others["pad"] = part, 0.0
         result.lines.append(("pad", "under the floor, as the part is formed on one side of it only"))
     elif (free := free_stroke(face)) > options.thickness:
         result.lines.append(("floor", f"not held: the rims of its walls are at two heights, so that one wall is formed "
@@ -209,6 +216,9 @@ def made(gmsh: Any, options: ToolSettings, progress: Any) -> ToolSet:
             closing = float(over - report.extent(holder.net)[0][2])
             result.closing = closing if closing > options.tolerance else 0.0
         others["holder"] = holder, result.closing - top
+    if pad:
+        part = others["pad"][0]
+        others["pad"] = part, result.blank.height - highest(part, result.blank.slope)
     for name, (surface, height) in others.items():
         result.area[name] = result.blank.pressed(surface)
         surface.net = placed(surface.net, np.eye(3), (0.0, 0.0, height))
@@ -216,6 +226,14 @@ def made(gmsh: Any, options: ToolSettings, progress: Any) -> ToolSet:
     if all(reach.rim.closed for reach in face.reaches):
         result.ratio = (result.blank.area / result.area["punch"])**0.5
     return result
+
+
+def highest(part: Surface, slope: np.ndarray) -> float:
+    """Return the largest height of a surface over a plane of a slope through the origin, mm."""
+    if not slope.any():
+        return float(report.extent(part.net)[1][2])
+    points = points_at(part.net, *grid(EXTREMES)).reshape(-1, 3)
+    return float((points[:, 2] - points[:, :2] @ slope).max())
 
 
 def without_holder(punch: Surface, die: Surface, distance: dict[str, np.ndarray], reason: str,
@@ -228,9 +246,7 @@ def without_holder(punch: Surface, die: Surface, distance: dict[str, np.ndarray]
     punch, die = (no_holder.continued(tool, width) for tool in (punch, die))
     result.lines.append(("holder", f"none, as {reason}: formed between punch and die, which go on by "
                          f"{width:.3g} mm along the tangents at the rim"))
-    low, high = box_of(die.net)
-    inset = INSET * options.thickness
-    result.blank = result.blank.within(np.array([low[:2] + inset, high[:2] - inset]))
+    result.blank = result.blank.on(die, INSET * options.thickness, options.flange)
     result.radius = min(own_flange.least_radius(tool, range(len(tool.names))) for tool in (punch, die))
     result.shoulder = np.inf
     result.height = -float(report.extent(die.net)[1][2])
