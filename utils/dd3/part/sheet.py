@@ -104,7 +104,7 @@ def read_sheet(shape: Shape, rays: Rays) -> Sheet:
         return Sheet("block", sides=(shape.tags, []))
     near = mostly(shape, chosen, weight, distance <= THICKER * thickness)
     joined = joined_to(shape, sides, set(near) - set(sides) - across, here, there)
-    joined += walls_of_steps(shape, sides + joined, here, there)
+    joined += walls_of_steps(shape, sides + joined, here, there, thickness)
     first, second = two_sides(shape, sides + joined, here, there, weight[at])
     if min(sum(shape.areas[tag] for tag in side) for side in (first, second)) < ONE_SIDED * area:
         return Sheet("block", sides=(shape.tags, []), walls=thickness)
@@ -133,21 +133,28 @@ def joined_to(shape: Shape, sides: list[int], others: set[int], here: np.ndarray
     return found
 
 
-def walls_of_steps(shape: Shape, sides: list[int], here: np.ndarray, there: np.ndarray) -> list[int]:
+def walls_of_steps(shape: Shape, sides: list[int], here: np.ndarray, there: np.ndarray, thickness: float) -> list[int]:
     """Return the walls of steps that are lower than two thicknesses, which face each other over less than half of their
-    height: groups of faces between parts of one side, where the parts across from these, `here` and `there` by samples,
-    are one, or have another group between them. A rim lies between parts that are across from each other."""
+    height: groups of faces at parts of one side only, where the parts across from these, `here` and `there` by samples,
+    are one, or have another group of such faces nearby. A rim lies between parts that are across from each other."""
     part = {tag: number for number, group in enumerate(shape.components(sides)) for tag in group}
     facing = np.zeros((len(set(part.values())),) * 2)
     for a, b in zip(here.tolist(), there.tolist()):
         if a in part and b in part:
             facing[part[a], part[b]] += 1
     groups = [sorted(group) for group in shape.components(set(shape.tags) - set(sides))]
-    between = [frozenset(part[tag] for tag in set().union(*(shape.neighbours[tag] for tag in group)) & part.keys())
+    between = [{part[tag] for tag in set().union(*(shape.neighbours[tag] for tag in group)) & part.keys()}
                for group in groups]
-    across = [frozenset(int(facing[number].argmax()) for number in parts) for parts in between]
-    return [tag for group, parts, others in zip(groups, between, across)
-            if len(parts) > 1 and not others & parts and (len(others) == 1 or others in between) for tag in group]
+    across = [{int(facing[number].argmax()) for number in parts} for parts in between]
+    corners = [shape.nodes[shape.triangles[shape.of(group)]].reshape(-1, 3) for group in groups]
+    boxes = [(points.min(axis=0) - thickness, points.max(axis=0) + thickness) for points in corners]
+
+    def near(i: int, j: int) -> bool:
+        return bool((boxes[i][0] < boxes[j][1]).all() and (boxes[j][0] < boxes[i][1]).all())
+
+    return [tag for i, (group, parts, others) in enumerate(zip(groups, between, across)) if not others & parts
+            and (len(parts) > 1 and len(others) == 1
+                 or any(between[k] == others and near(i, k) for k in range(len(groups)))) for tag in group]
 
 
 def through_thickness(shape: Shape, here: np.ndarray, there: np.ndarray) -> set[int]:
