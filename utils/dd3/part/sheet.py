@@ -153,7 +153,7 @@ def walls_of_steps(shape: Shape, sides: list[int], here: np.ndarray, there: np.n
         return bool((boxes[i][0] < boxes[j][1]).all() and (boxes[j][0] < boxes[i][1]).all())
 
     return [tag for i, (group, parts, others) in enumerate(zip(groups, between, across)) if not others & parts
-            and (len(parts) > 1 and len(others) == 1
+            and ((len(parts) > 1 and len(others) == 1)
                  or any(between[k] == others and near(i, k) for k in range(len(groups)))) for tag in group]
 
 

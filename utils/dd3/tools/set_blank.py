@@ -27,8 +27,9 @@ EXPONENT = 0.5
 NEAR = 0.1
 # Largest distance of the simplified outline from the outline, over the margin.
 SIMPLE = 0.1
-# Gauss points along each side of a patch at which its area is taken.
-SAMPLES = 4
+# Cells along each side of a patch, of two Gauss points each, at which its area is taken: of one patch, divided by the
+# root of their number, and the least and the largest one.
+CELLS = 128, 2, 64
 # Step of the grid on which the distance from the outline is taken, over the margin.
 STEP = 0.2
 # Part of the area of its box above which an outline is not cut: the box is the blank.
@@ -86,23 +87,24 @@ class Blank:
         return np.column_stack([plan, plan @ self.slope + self.height])
 
     def on(self, die: Surface, inset: float, flange: float | None) -> "Blank":
-        """Return the blank with its outline on a die less an inset, mm; a Problem where it goes beyond a flange that
-        was given: then it would be cut off there."""
+        """Return the blank with its outline on a die less an inset, mm; a Problem where it goes beyond the flange of
+        this width that the user has set: then it would be cut off there."""
         low, high = box_of(die.net)
         box = np.array([low[:2] + inset, high[:2] - inset])
         over = float(max((box[0] - self.outline).max(), (self.outline - box[1]).max()))
         if flange is not None and over > inset:
-            raise Problem(f"--flange {flange:g}: the blank reaches {over + inset:.3g} mm beyond the die; expected "
+            raise Problem(f"--flange: the blank reaches {over + inset:.3g} mm beyond the die; expected "
                           f"{np.ceil(flange + over + inset):g} or more, or a smaller --margin")
         return replace(self, outline=np.clip(self.outline, *box))
 
     def pressed(self, surface: Surface) -> float:
         """Return the area in plan of the part of a surface that is over the blank, mm2."""
-        t, weight = np.polynomial.legendre.leggauss(SAMPLES)
-        u, v = (axis.ravel() for axis in np.meshgrid((1 + t) / 2, (1 + t) / 2))
+        count = int(np.clip(CELLS[0] / len(surface.net)**0.5, *CELLS[1:]))
+        t = ((np.arange(count)[:, None] + 0.5 * (1 + np.array([-1, 1]) / 3**0.5)) / count).ravel()
+        u, v = (axis.ravel() for axis in np.meshgrid(t, t))
         area, points = np.abs(areas_at(surface.net, u, v)[..., 2]), points_at(surface.net, u, v)
         over = inside(points[..., :2].reshape(-1, 2), self.border).reshape(area.shape)
-        return float((area * over).sum(axis=0) @ np.outer(weight, weight).ravel() / 4)
+        return float((area * over).sum() / len(t)**2)
 
 
 def blank_of(path: Path, covered: Surface, thickness: float, margin: float) -> Blank:

@@ -187,7 +187,8 @@ def made(gmsh: Any, options: ToolSettings, progress: Any) -> ToolSet:
     result.bend, least = (own_flange.least_radius(tool, range(len(tool.names))) for tool in (punch, face.surface))
     result.radius = min(result.shoulder, result.bend, least)
     assert face.blank
-    result.blank = face.blank.on(face.surface, INSET * options.thickness, options.flange)
+    width = None if options.flange is None else max(reach.width for reach in face.reaches)
+    result.blank = face.blank.on(face.surface, INSET * options.thickness, width)
     top = float(report.extent(face.surface.net[face.surface.face == len(face.surface.names) - 1])[1][2])
     over = top + options.thickness
     result.height = -top
