@@ -41,7 +41,8 @@ class Blank:
     """Blank in plan: closed outline (n, 2), mm, anticlockwise, and whether it is cut along it or is its box; the border
     of what is covered at the end of the draw, anticlockwise, and its points in the flat blank (m, 2), the largest
     thinning by the estimate, a fraction, and its place (3); none where these are not estimated; slope (2,) of the plane
-    on which it lies at the start, and its height at x = y = 0, mm."""
+    on which it lies at the start, and its height at x = y = 0, mm; how much of it was cut off at the border of the die,
+    and the flange of the die that it needs, mm, 0 where it has it."""
 
     outline: np.ndarray
     cut: bool
@@ -51,6 +52,8 @@ class Blank:
     thinnest: np.ndarray = field(default_factory=lambda: np.zeros(3))
     slope: np.ndarray = field(default_factory=lambda: np.zeros(2))
     height: float = 0.0
+    lost: float = 0.0
+    flange: float = 0.0
 
     @property
     def box(self) -> np.ndarray:
@@ -87,15 +90,14 @@ class Blank:
         return np.column_stack([plan, plan @ self.slope + self.height])
 
     def on(self, die: Surface, inset: float, flange: float | None) -> "Blank":
-        """Return the blank with its outline on a die less an inset, mm; a Problem where it goes beyond the flange of
-        this width that the user has set: then it would be cut off there."""
+        """Return the blank cut off at the border of a die less an inset, mm. Where that is more than an inset the
+        flange of this width that the user has set is too narrow."""
         low, high = box_of(die.net)
         box = np.array([low[:2] + inset, high[:2] - inset])
-        over = float(max((box[0] - self.outline).max(), (self.outline - box[1]).max()))
-        if flange is not None and over > inset:
-            raise Problem(f"--flange: the blank reaches {over + inset:.3g} mm beyond the die; expected "
-                          f"{np.ceil(flange + over + inset):g} or more, or a smaller --margin")
-        return replace(self, outline=np.clip(self.outline, *box))
+        beyond = float(max((box[0] - self.outline).max(), (self.outline - box[1]).max()))
+        narrow = flange is not None and beyond > inset
+        return replace(self, outline=np.clip(self.outline, *box), lost=beyond if narrow else 0.0,
+                       flange=flange + beyond if narrow and flange else 0.0)
 
     def pressed(self, surface: Surface) -> float:
         """Return the area in plan of the part of a surface that is over the blank, mm2."""
