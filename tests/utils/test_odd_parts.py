@@ -101,6 +101,20 @@ def test_pad_under_an_inclined_blank(tmp_path, program):
     assert "pad" in said and "error" not in said, said
 
 
+def fender():
+    """Make a curved sheet with a feature line, whose slopes at its rim are below 30 degrees and change along it."""
+    x, y = np.linspace(-90, 90, 13), np.linspace(-60, 60, 11)
+    occ.addBSplineSurface([occ.addPoint(a, b, 0.9 * (30 - 0.0022 * a * a - 0.004 * b * b + 3 * math.sin(a / 30)
+                                                     + 8 / (1 + math.exp(-(b - 10 - a / 10) / 6))))
+                           for b in y for a in x], 13)
+
+
+def test_binder_that_folds(tmp_path):
+    """Check that a shallow part around which a binder would fold is formed without one."""
+    said = call("tool", made(tmp_path / "fender.step", fender), tmp_path / "tools", "--thickness", "0.8")
+    assert "none, as the binder around the part would fold" in said and not (tmp_path / "tools" / "holder.bez").exists()
+
+
 def test_flange(tmp_path):
     """Check that a flange of the die that cuts off the blank is warned of, with the one that leaves it whole."""
     part = made(tmp_path / "pan.step", lambda: turned_solid([(0, 0), (30, 0), (33, 20), (45, 20)], 1, 4))

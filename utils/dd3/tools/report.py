@@ -16,6 +16,7 @@ REACH = 1.0  # largest distance of free edges that count as a near miss, mm
 SHARP = 5.0  # kinks above this are edges of the tool, degrees
 CREASE = 0.3  # kinks above this are no smooth joints for the program, degrees
 MOST_NAMES = 6
+MADE = {"wall", "shoulder", "flange", "strip", "holder"}  # names of faces that are made around a part
 
 
 class Named(Protocol):
@@ -142,7 +143,7 @@ def say_folds(report: Report, surface: Surface) -> None:
     if len(bent):
         middle = points_at(surface.net[bent[:1]], np.array([0.5]), np.array([0.5]))[0, 0]
         report.errors.append(f"{plural(len(bent), 'folded patch')}, the first at x y z = {where(middle)}: "
-                             f"{named(surface, surface.face[bent])}")
+                             f"{named(surface, surface.face[bent])}{remedy(surface, surface.face[bent], '')}")
 
 
 def say_kinks(report: Report, surface: Surface, joints: Joints) -> None:
@@ -160,14 +161,22 @@ def say_kinks(report: Report, surface: Surface, joints: Joints) -> None:
         faces = surface.face[np.concatenate([joints.first[back], joints.second[back]]) // 4]
         report.errors.append(
             f"{plural(len(back), 'joint')} at which the surface turns back upon itself, the first at "
-            f"{place_of(joints, joints.first[back[0]])}: {named(surface, faces)}; leave out one of them, or export the "
-            "part anew, in another format")
+            f"{place_of(joints, joints.first[back[0]])}: {named(surface, faces)}"
+            + remedy(surface, faces, "; leave out one of them, or export the part anew, in another format"))
     convex = sharp[is_convex(surface.net, joints, sharp)]
     if len(convex):
         report.warnings.append(
             f"{plural(len(convex), 'joint')} on sharp convex edges, the first at "
             f"{place_of(joints, joints.first[convex[0]])}: a sheet that meets them needs a radius there: "
             f"{named(surface, surface.face[joints.first[convex] // 4])}")
+
+
+def remedy(surface: Surface, faces: np.ndarray, of_cad: str) -> str:
+    """Return what to do with faulty faces: of the CAD, or those that were made around the part."""
+    if {surface.names[face] for face in np.unique(faces).tolist()} & MADE:
+        return ("; the die cannot go on there from the part: give the part a flange in the CAD program, or take a "
+                "smaller --shoulder")
+    return of_cad
 
 
 def is_convex(net: np.ndarray, joints: Joints, chosen: np.ndarray) -> np.ndarray:

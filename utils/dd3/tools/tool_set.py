@@ -173,6 +173,7 @@ def made(gmsh: Any, options: ToolSettings, progress: Any) -> ToolSet:
             return without_holder(punch, die, distance, missing.reason, options)
     else:
         raise Problem(f"{options.source}: the binder at the rim of the part is curved too strongly")
+    whole = punch, die
     notes = punch.notes + die.notes
     result = ToolSet(distance=distance, lines=[("", note) for note in notes] + face.lines)
     result.curves = trim_deck.on_tool(punch if options.side == "punch" else die, options)
@@ -210,6 +211,8 @@ def made(gmsh: Any, options: ToolSettings, progress: Any) -> ToolSet:
                              "that; compare the middle of the sheet after the draw, and give the blank that margin"))
     if not pad or any(reach.own or goes_around(reach) for reach in face.reaches):
         holder = holder_of(gmsh, face, curves, options)
+        if len(report.folded(holder.net)) and not options.advice and no_holder.is_shallow(die):
+            return without_holder(*whole, distance, "the binder around the part would fold", options)
         binder = face.binders[0]
         if len(face.binders) == 1 and binder.plane and (slope := binder.gradient(np.zeros(2))).any():
             result.blank.slope, result.blank.height = slope, float(binder.z(np.zeros(2))) - top
