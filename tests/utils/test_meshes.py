@@ -166,7 +166,7 @@ def test_gmsh(program, tmp_path):
     gmsh.finalize()
     found = []
     for name in ("disc.geo", "disc.msh", "disc.vtk", "disc.unv"):
-        mesh = meshes.meshes.read_gmsh(tmp_path / name)
+        mesh = meshes.read_gmsh(tmp_path / name)
         meshes.renumber(mesh)
         found.append((len(mesh.nodes), len(mesh.elements)))
         meshes.turn_mirrored(mesh)
