@@ -58,7 +58,7 @@ def compensate_rail(options):
     """Correct the tools of the rail, and write them as STEP files."""
     rail = copied(options.work, "rail")
     process = read_process(rail / "rail.toml")
-    process.operations[0].settings.update(divisions="60 36 1", levels=0)
+    process.operations[0].settings.update(divisions="60 36 1", levels=0, points=5)
     found = compensate.compensate(options.program, process, "tools", 2, 0.1, 1.0, [], None, threads=2, half_turn=True)
     largest, rms = min(found)
     check(largest <= found[0][0] / 4 and rms <= found[0][1] / 4, f"rail: {found}")
