@@ -166,8 +166,8 @@ def test_parts_with_common_nodes():
 
 def test_held_by_nodes(tmp_path):
     """Check that the nodes that *NODE of a dynain file holds become sets of both faces."""
-    text = ["*KEYWORD", "*NODE", *(f"{i:8d}{x:16.6f}{y:16.6f}{0.0:16.6f}{held:8d}" for i, (x, y, held) in enumerate(
-        ((0, 0, 4), (10, 0, 2), (10, 10, 0), (0, 10, 1)), 1)), "*ELEMENT_SHELL_THICKNESS",
+    text = ["*KEYWORD", "*NODE", *(f"{i:8d}{x:16.6f}{y:16.6f}{0.0:16.6f}{held:8d}{turns:8d}" for i, (x, y, held, turns)
+            in enumerate(((0, 0, 4, 0), (10, 0, 2, 4), (10, 10, 0, 7), (0, 10, 1, 0)), 1)), "*ELEMENT_SHELL_THICKNESS",
             "".join(f"{value:8d}" for value in (1, 1, 1, 2, 3, 4)), "".join(f"{1.0:16.6f}" for _ in range(4)),
             "*INITIAL_STRESS_SHELL", row(1, 1, 1), row(0.0, 100.0, 0, 0, 0, 0, 0, 0.1), "*END"]
     (tmp_path / "dynain").write_text("\n".join(text))
@@ -175,6 +175,7 @@ def test_held_by_nodes(tmp_path):
     assert {name: nodes.tolist() for name, nodes in sheet.sets.items() if name.startswith("hold")} == {
         "hold_x": [6, 7], "hold_xy": [0, 1], "hold_y": [2, 3]}
     assert any("holds 1 nodes along x and y" in line for line in said)
+    assert "left out: the rotations of 2 nodes that *NODE holds (RC)" in said
 
 
 def test_faces_of_tools():
@@ -185,8 +186,9 @@ def test_faces_of_tools():
     assert [tool.cover for tool in found.tools] == [0.5, 0.0] and sum("AUTOMATIC" in note for note in found.notes) == 1
     call("import", "deck.k")
     assert " 0\n" in Path("deck/punch.bez").read_text() and " -0.5\n" in Path("deck/die.bez").read_text()
-    contact[3] = row("", "", 0.3, 0.4, "", 0.5)
-    assert [tool.cover for tool in imported(flat_deck(contact=contact))[0].tools] == [0.1, 0.0]
+    for third, cover in ((row("", "", 0.3, 0.4, "", 0.5), 0.2), (row("", "", "", "", "", 0.5), 0.25)):
+        contact[3] = third  # a thickness of the contact is not scaled
+        assert [tool.cover for tool in imported(flat_deck(contact=contact))[0].tools] == [cover, 0.0]
     single = ["*CONTACT_AUTOMATIC_SINGLE_SURFACE", row("", "", 5), row(0.15)]
     found = imported(flat_deck(contact=single))[0]
     assert [(tool.friction, tool.cover) for tool in found.tools] == [(0.15, 0.5)] * 2

@@ -235,6 +235,8 @@ def sheet_of(path: Path, material: Sequence[str], column: int, rolling: Sequence
     held = held_sets(mesh.held, used)
     said += [f"note: *NODE holds {len(nodes) // 2} nodes along {' and '.join(name[5:])} (TC): node set {name}, for "
              "*BOUNDARY" for name, nodes in held.items()]
+    if mesh.turns:
+        said.append(f"left out: the rotations of {len(mesh.turns)} nodes that *NODE holds (RC)")
     said += account_of(reader)
     nodes = np.array([(node, a, b) for (a, b), node in bound.items()], int).reshape(-1, 3)
     return SheetState(points, points, np.hstack((2 * quads, 2 * quads + 1)), float(at_corner.mean()), tensor,

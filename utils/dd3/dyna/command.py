@@ -39,7 +39,7 @@ from dd3.tools.surface import write
 RIGID = 20
 SEW = 2e-3  # distance up to which free edges of a tool are joined, mm: deck writers round coordinates
 SECTION = "*SECTION_SHELL"
-LONGEST_NAME = 40  # of a tool
+LONGEST_NAME = 40  # of a tool, before its number: the program takes 60 characters
 BENT = 2.0  # angle between first edges of elements, degrees, from which a note tells of it
 
 
@@ -146,14 +146,14 @@ class Import:
 
     def cover(self, number: int, given: float, factor: float) -> float:
         """Return how far the contact surface of a part of shells lies from its nodes, mm: half of the thickness that
-        the contact gives, or of that of the part, times a factor."""
+        the contact gives, else of that of the part times a factor."""
         part = self.deck.parts.get(number)
         if not part or number == self.part.number or not any(cell.dimension == 2 for cell in part.cells):
             return 0.0
         own = max((value for cell in part.cells for value in cell.thickness), default=0.0)
         if not own and part.section in self.deck.sections and self.deck.sections[part.section][0].keyword == SECTION:
             own = self.deck.section(part, SECTION, SHELL)[1].number("T1")
-        return (given or own) * factor / 2 * self.units.length
+        return (given or own * factor) / 2 * self.units.length
 
     def root(self, number: int) -> int:
         """Return the rigid part that a part follows."""

@@ -61,6 +61,7 @@ BEAD = "LCIDRF LCIDNF DBDTH DFSCL NUMINT DBPID ELOFF NBEAD"
 MOTION = "PID DOF VAD LCID SF VID DEATH BIRTH"
 FORCE = "PID DOF LCID SF CID M1 M2 M3"
 PENALTY = "a setting of LS-DYNA's contact; that of dd3imp is in *CONTACT"
+THICK = "the thickness of tools counts in an AUTOMATIC contact alone; others act at their nodes"
 ALWAYS = "a contact acts from the start to the end; `release` withdraws a tool"
 
 
@@ -68,8 +69,8 @@ ALWAYS = "a contact acts from the start to the end; `release` withdraws a tool"
 class Pair:
     """Two sides of a contact, parts by number, its friction and place.
 
-    covers: where the contact acts at the faces of shells, the thickness that the contact gives to each side (0: that of
-    the shells) and the factor of it; None where it acts at their nodes.
+    covers: where the contact acts at the faces of shells, the thickness that the contact gives to each side, 0 for that
+    of the shells, and the factor on the latter; None where it acts at their nodes.
     """
 
     sides: tuple[set[int], set[int]]
@@ -409,6 +410,8 @@ class Deck:
             for i, (names, why) in enumerate(contact_rows(card.keyword), 2):
                 if i < len(card):
                     card.row(i, names).leave(why)
+            if not covers and len(card) > 2:
+                card.row(2, CONTACT[2]).leave(THICK, "SAST SBST SFSAT SFSBT")
             found.append(Pair((one, other), friction, card.place, covers))
         return found
 

@@ -89,9 +89,9 @@ def judged(tools: "ToolSet", material: Path | None) -> tuple[list[tuple[str, str
         lines.append(("thinning", found))
         if tools.blank.thinning > limit:
             warnings.append(f"likely to split: thinning of {found}. Larger radii there, less depth, or two strokes")
-    if tools.blank.lost:
-        warnings.append(f"--flange: the blank is cut off at the border of the die, by up to {tools.blank.lost:.3g} mm; "
-                        f"{np.ceil(tools.blank.flange):g} leaves it whole, or take a smaller --margin")
+    if tools.lost:
+        warnings.append(f"--flange: the blank is cut off at the border of the die, by up to {tools.lost:.3g} mm; "
+                        f"{np.ceil(tools.flange):g} leaves it whole, or take a smaller --margin")
     if tools.ratio > RATIO:
         warnings.append(
             f"the drawing ratio, the root of the area of the blank over that of the punch, is {tools.ratio:.2f}: mild "

@@ -11,7 +11,6 @@ from scipy.spatial import cKDTree
 from dd3.errors import Problem
 from dd3.progress import doing
 from dd3.tools.drawability import thinnest
-from dd3.tools.joints import box_of
 from dd3.tools.plane import crosses, inside
 from dd3.tools.surface import Surface, areas_at, points_at
 from dd3.triangles import Triangles, area_vectors, prepared, rims
@@ -41,8 +40,7 @@ class Blank:
     """Blank in plan: closed outline (n, 2), mm, anticlockwise, and whether it is cut along it or is its box; the border
     of what is covered at the end of the draw, anticlockwise, and its points in the flat blank (m, 2), the largest
     thinning by the estimate, a fraction, and its place (3); none where these are not estimated; slope (2,) of the plane
-    on which it lies at the start, and its height at x = y = 0, mm; how much of it was cut off at the border of the die,
-    and the flange of the die that it needs, mm, 0 where it has it."""
+    on which it lies at the start, and its height at x = y = 0, mm."""
 
     outline: np.ndarray
     cut: bool
@@ -52,8 +50,6 @@ class Blank:
     thinnest: np.ndarray = field(default_factory=lambda: np.zeros(3))
     slope: np.ndarray = field(default_factory=lambda: np.zeros(2))
     height: float = 0.0
-    lost: float = 0.0
-    flange: float = 0.0
 
     @property
     def box(self) -> np.ndarray:
@@ -89,15 +85,9 @@ class Blank:
         plan = points - np.outer((points - middle) @ across * (1.0 - self.normal[2]), across)
         return np.column_stack([plan, plan @ self.slope + self.height])
 
-    def on(self, die: Surface, inset: float, flange: float | None) -> "Blank":
-        """Return the blank cut off at the border of a die less an inset, mm. Where that is more than an inset the
-        flange of this width that the user has set is too narrow."""
-        low, high = box_of(die.net)
-        box = np.array([low[:2] + inset, high[:2] - inset])
-        beyond = float(max((box[0] - self.outline).max(), (self.outline - box[1]).max()))
-        narrow = flange is not None and beyond > inset
-        return replace(self, outline=np.clip(self.outline, *box), lost=beyond if narrow else 0.0,
-                       flange=flange + beyond if narrow and flange else 0.0)
+    def within(self, box: np.ndarray) -> "Blank":
+        """Return the part of the blank in a box (2, 2)."""
+        return replace(self, outline=np.clip(self.outline, *box))
 
     def pressed(self, surface: Surface) -> float:
         """Return the area in plan of the part of a surface that is over the blank, mm2."""

@@ -60,7 +60,6 @@ class ToolSettings:
     side: str = OPEN
     material: Path | None = None
     symmetric: bool = False
-    finer: float = field(default=1.0, init=False)  # factor on the tolerance of the patches of a part, for their offsets
     whole: bool = field(default=False, init=False)  # the set of tools of a part, not one tool
     # What the reading of a part finds: the part without its openings, the faces that one tool touches, its rims and
     # holes, the axes of the tools normal to planes of symmetry at 0, the roles of faces, angles and radii of sharp

@@ -19,7 +19,7 @@ from dd3.tools import cad, cad_mesh, drawability, no_holder, own_flange, report,
 from dd3.tools.binder import NoBinder
 from dd3.tools.die_face import INSET, Face, Reach, TooLong, consistent, estimated, even, flange, goes_around, with_face
 from dd3.tools.faces import spans
-from dd3.tools.joints import find_joints
+from dd3.tools.joints import box_of, find_joints
 from dd3.tools.limits import started
 from dd3.tools.moved import placed, rotation
 from dd3.tools.nagata import groups
@@ -28,7 +28,7 @@ from dd3.tools.pad_force import Pin, Pull, pins
 from dd3.tools.rims import Rim, border_rims, find_rims, lengths, patches, wall
 from dd3.tools.set_blank import Blank
 from dd3.tools.settings import ToolSettings
-from dd3.tools.surface import Surface, from_nodes, grid, points_at, turned
+from dd3.tools.surface import Surface, from_nodes, turned
 
 # Defaults over the thickness: clearance, radius of the shoulder, margin of the blank; smaller ones for a drawing ratio
 # that is too large with these.
@@ -48,8 +48,6 @@ STEEP = 0.5
 JUST = 0.999
 # Distance of offsets over the tolerance up to which the patches are made smaller, and the part of it they are made for.
 NEARLY, FINER = 1.5, 0.9
-# Points along each side of a patch among which its highest one is taken.
-EXTREMES = 9
 DOWN = np.array([0.0, 0.0, -1.0])
 
 
@@ -60,8 +58,10 @@ class ToolSet:
     shoulder, that of all faces of punch and die and that of the punch, mm; force of the pad, N, 0 if it is not
     estimated, and whether the pins need so much; what pulls at a floor, and the holes in which pins locate it; the
     blank, and the areas in plan of the tools over it, mm2; the drawing ratio, the root of the area of the blank over
-    that of the punch in plan, 0 with open ends or no holder; what is below a step of the punch; the largest distances
-    of the faces of punch and die from the CAD, mm; the curves along which the part is cut; lines of the report."""
+    that of the punch in plan, 0 with open ends or no holder; what is below a step of the punch; how much of the blank
+    the border of the die cuts off, 0 but for a flange that the user has set, and the flange that leaves it whole, mm;
+    the largest distances of the faces of punch and die from the CAD, mm; the curves along which the part is cut; lines
+    of the report."""
 
     surfaces: dict[str, Surface] = field(default_factory=dict)
     travel: float = 0.0
@@ -78,18 +78,22 @@ class ToolSet:
     area: dict[str, float] = field(default_factory=dict)
     ratio: float = 0.0
     inner_pan: drawability.InnerPan | None = None
+    lost: float = 0.0
+    flange: float = 0.0
     distance: dict[str, np.ndarray] = field(default_factory=dict)
     curves: trim_deck.Curves = field(default_factory=trim_deck.Curves)
     lines: list[tuple[str, str]] = field(default_factory=list)
 
 
-def both_sides(gmsh: Any, options: ToolSettings, progress: Any
+def both_sides(gmsh: Any, options: ToolSettings, progress: Any, finer: float = 1.0
               ) -> tuple[Surface, Surface, dict[str, np.ndarray], list[str]]:
     """Return the surfaces of the punch and the die in the closed press, both with normals upwards, into the cavity, the
-    largest distances of their faces from the CAD by the names of the tools, mm, and the roles of the faces."""
+    largest distances of their faces from the CAD by the names of the tools, mm, and the roles of the faces. An offset
+    enlarges the distance: where it is a little beyond the tolerance both are made again of patches within a part of it,
+    `finer`."""
     gap = options.thickness + options.clearance
     fine, least = copy(options), options.radius
-    fine.tolerance *= options.finer
+    fine.tolerance *= finer
     if options.sharp:  # an offset enlarges what the patches of the fillets are off the CAD
         fine.tolerance *= options.radius / (options.radius + gap)
         least *= JUST
@@ -122,6 +126,9 @@ def both_sides(gmsh: Any, options: ToolSettings, progress: Any
         tool.notes = notes + tool.notes
         notes = []
         found.append(tool)
+    beyond = max(off.max() for off in distance.values()) / max(options.tolerance, options.sew or 0.0)
+    if 1.0 < beyond < NEARLY and finer == 1.0:
+        return both_sides(gmsh, options, progress, FINER / beyond)
     return found[0], found[1], distance, [options.roles.get(tag, "") for tag in model.origin]
 
 
@@ -157,10 +164,6 @@ def made(gmsh: Any, options: ToolSettings, progress: Any) -> ToolSet:
     options = copy(options)
     for _ in range(MESHED):
         punch, die, distance, roles = both_sides(gmsh, options, progress)
-        beyond = max(found.max() for found in distance.values()) / max(options.tolerance, options.sew or 0.0)
-        if 1.0 < beyond < NEARLY and options.finer == 1.0:  # by the offset, which enlarges the distance
-            options.finer = FINER / beyond
-            continue
         own = own_flange.labels_of(die, roles, shoulder=False)
         try:
             face = with_face(gmsh, own_flange.trimmed(die, own), options)
@@ -188,8 +191,8 @@ def made(gmsh: Any, options: ToolSettings, progress: Any) -> ToolSet:
     result.bend, least = (own_flange.least_radius(tool, range(len(tool.names))) for tool in (punch, face.surface))
     result.radius = min(result.shoulder, result.bend, least)
     assert face.blank
-    width = None if options.flange is None else max(reach.width for reach in face.reaches)
-    result.blank = face.blank.on(face.surface, INSET * options.thickness, width)
+    set_blank(result, face.blank, face.surface, options)
+    result.flange = max(reach.width for reach in face.reaches) + result.lost
     top = float(report.extent(face.surface.net[face.surface.face == len(face.surface.names) - 1])[1][2])
     over = top + options.thickness
     result.height = -top
@@ -199,30 +202,28 @@ def made(gmsh: Any, options: ToolSettings, progress: Any) -> ToolSet:
     floor = np.isin(face.surface.face, [label for label, role in enumerate(roles) if role == "floor"])
     result.pulls = pulls(face)
     pad = floor.any() and one_sided(face, result.pulls)
+    held = not pad or any(reach.own or goes_around(reach) for reach in face.reaches)
+    binder = face.binders[0]
+    if held and len(face.binders) == 1 and binder.plane and (slope := binder.gradient(np.zeros(2))).any():
+        result.blank.slope, result.blank.height = slope, float(binder.z(np.zeros(2))) - top
     if pad:
         part = face.surface.select(floor)
         result.pins = pins(options.holes, part, options)
         others["die"] = face.surface.select(~floor), -top
-        others["pad"] = part, 0.0
+        others["pad"] = part, result.blank.height - highest(part, result.blank.slope)
         result.lines.append(("pad", "under the floor, as the part is formed on one side of it only"))
     elif (free := free_stroke(face)) > options.thickness:
         result.lines.append(("floor", f"not held: the rims of its walls are at two heights, so that one wall is formed "
                              f"alone over {free:.3g} mm of the stroke, and may draw the sheet along the punch by up to "
                              "that; compare the middle of the sheet after the draw, and give the blank that margin"))
-    if not pad or any(reach.own or goes_around(reach) for reach in face.reaches):
+    if held:
         holder = holder_of(gmsh, face, curves, options)
         if len(report.folded(holder.net)) and not options.advice and no_holder.is_shallow(die):
             return without_holder(*whole, distance, "the binder around the part would fold", options)
-        binder = face.binders[0]
-        if len(face.binders) == 1 and binder.plane and (slope := binder.gradient(np.zeros(2))).any():
-            result.blank.slope, result.blank.height = slope, float(binder.z(np.zeros(2))) - top
-        else:
+        if not result.blank.inclined:
             closing = float(over - report.extent(holder.net)[0][2])
             result.closing = closing if closing > options.tolerance else 0.0
         others["holder"] = holder, result.closing - top
-    if pad:
-        part = others["pad"][0]
-        others["pad"] = part, result.blank.height - highest(part, result.blank.slope)
     for name, (surface, height) in others.items():
         result.area[name] = result.blank.pressed(surface)
         surface.net = placed(surface.net, np.eye(3), (0.0, 0.0, height))
@@ -232,12 +233,22 @@ def made(gmsh: Any, options: ToolSettings, progress: Any) -> ToolSet:
     return result
 
 
+def set_blank(result: ToolSet, blank: Blank, die: Surface, options: ToolSettings) -> None:
+    """Set the blank, cut off at the border of the die, and how much of it is lost where the user's flange is too narrow
+    for it."""
+    inset = INSET * options.thickness
+    low, high = box_of(die.net)
+    box = np.array([low[:2] + inset, high[:2] - inset])
+    beyond = float(max((box[0] - blank.outline).max(), (blank.outline - box[1]).max()))
+    result.lost = beyond if options.flange is not None and beyond > inset else 0.0
+    result.blank = blank.within(box)
+
+
 def highest(part: Surface, slope: np.ndarray) -> float:
     """Return the largest height of a surface over a plane of a slope through the origin, mm."""
-    if not slope.any():
-        return float(report.extent(part.net)[1][2])
-    points = points_at(part.net, *grid(EXTREMES)).reshape(-1, 3)
-    return float((points[:, 2] - points[:, :2] @ slope).max())
+    net = part.net.copy()
+    net[..., 2] -= net[..., :2] @ slope
+    return float(report.extent(net)[1][2])
 
 
 def without_holder(punch: Surface, die: Surface, distance: dict[str, np.ndarray], reason: str,
@@ -246,11 +257,12 @@ def without_holder(punch: Surface, die: Surface, distance: dict[str, np.ndarray]
     result = ToolSet(distance=distance, lines=[("", note) for note in punch.notes + die.notes])
     result.curves = trim_deck.on_tool(punch if options.side == "punch" else die, options)
     result.blank = estimated(die.net, [no_holder.outer_rim(die)[0]], result.lines, options)
-    width = options.flange or no_holder.width_for(die, result.blank.border, INSET * options.thickness)
+    result.flange = no_holder.width_for(die, result.blank.border, INSET * options.thickness)
+    width = options.flange or result.flange
     punch, die = (no_holder.continued(tool, width) for tool in (punch, die))
     result.lines.append(("holder", f"none, as {reason}: formed between punch and die, which go on by "
                          f"{width:.3g} mm along the tangents at the rim"))
-    result.blank = result.blank.on(die, INSET * options.thickness, options.flange)
+    set_blank(result, result.blank, die, options)
     result.radius = min(own_flange.least_radius(tool, range(len(tool.names))) for tool in (punch, die))
     result.shoulder = np.inf
     result.height = -float(report.extent(die.net)[1][2])
