@@ -51,7 +51,7 @@ def test_inner_pan():
 def test_limits(tmp_path):
     """Check the limit of a material, and when the drawing ratio of an inner pan is a warning."""
     blank = Blank(np.array([[0, 0], [100, 0], [100, 100], [0, 100]], float), True, thinning=0.22)
-    tools = SimpleNamespace(blank=blank, ratio=1.8, height=0.0, inner_pan=None)
+    tools = SimpleNamespace(blank=blank, ratio=1.8, height=0.0, inner_pan=None, lost=0.0)
     assert not judged(tools, None)[1] and THINNING == 0.25
     (tmp_path / "own.dat").write_text(MATERIAL + "  thinning_limit = 0.2\n")
     assert "likely to split" in judged(tools, tmp_path / "own.dat")[1][0]
