@@ -31,6 +31,7 @@ TABLES = {
     "GPa": "strain,stress in GPa\n" + "".join(f"{a},{b / 1000}\n" for a, b in CURVE),
     "other order": "stress,strain\n" + "".join(f"{b},{a}\n" for a, b in CURVE), "comment": "# a b\n" + rows("{} {} # c"),
     "true beside engineering": "eng. strain,true strain,eng. stress,true stress\n" + rows("9,{},9,{}"),
+    "headings with blanks": "True strain   True stress (MPa)\n" + rows("{}    {}"),
     "exponents": "".join(f"{a:.3e}".replace("e", "D") + f" {b:.5E}\n" for a, b in CURVE)}
 
 
@@ -65,6 +66,7 @@ def test_wrong_tables(tmp_path):
             ("engineering strain,engineering stress\n" + rows("{},{}"), "1: error: the strain is an engineering one"),
             (rows("{},{}") + "mean,300\n", "6: error: 'mean' is not a number"), (rows("{},{}") + "0.08,\n", "6: error: a number is"),
             (rows("{},{}") + "0.08,nan\n", "6: error: 'nan' is not"), (rows("{},{}") + '"0.08,300\n', "6: error: "),
+            ("true strain true stress\n" + rows("{} {}"), "1: error: no row has numbers in the columns named: 4 names, 2"),
             ("strain,stress\nA,B\n", "0 rows: none begins with a number"), ("", "0 rows"),
             ("strain,strain,stress\n" + rows("0,{},{}"), "1: error: a second column for the strain")):
         path.write_text(text)

@@ -130,9 +130,16 @@ def read_columns(path: str | Path, columns: Sequence[Column], account: Account) 
     both = [(line, row) for line in lines for row in [line.cells(separator if separator in line.text else " ")]
             if any(text for text, _ in row)]
     lines, cells = [line for line, _ in both], [row for _, row in both]
+    if separator == " ":
+        cells = with_headings(lines, cells)
     names, places = named(lines, cells, columns)
     first = next((i for i in range(names + 1, len(lines)) if is_data(cells[i], places)), len(lines))
     if first == len(lines):
+        below = next((row for row in cells[names + 1:] if is_data(row, ())), None)
+        if names >= 0 and below:
+            raise lines[names].problem(
+                cells[names][places[0]], f"no row has numbers in the columns named: {len(cells[names])} names, "
+                f"{len(below)} cells in a row", "a name for each column; one with blanks in quotes")
         return []
     if not places:
         places = filled(lines[first:], cells[first:], columns, separator)
@@ -162,6 +169,15 @@ def separator_of(lines: Sequence[Line]) -> str:
     decimal = all(len(text.split()) > 1 for text in bare) and all(
         NUMBER.fullmatch(word) and "." not in word for word in words)
     return " " if decimal else ","
+
+
+def with_headings(lines: Sequence[Line], cells: Sequence[list[Word]]) -> list[list[Word]]:
+    """Return the cells of columns apart by blanks; those of a heading may hold single blanks where two or more, or
+    tabs, separate as many cells as a row of numbers has."""
+    count = next((len(row) for row in cells if is_data(row, ())), 0)
+    wide = [line.words(r"[^\s\"']+(?: [^\s\"']+)*") for line in lines]
+    return [others if len(row) != count == len(others) and not is_data(row, ()) else row
+            for row, others in zip(cells, wide)]
 
 
 def is_data(cells: Sequence[Word], places: Sequence[int]) -> bool:
