@@ -56,6 +56,24 @@ def low_step(height, letters=False):
         body = occ.cut(body, boxes(shape, -0.8, -1, height))[0]
 
 
+def embossing():
+    """Make a lid of 0.8 mm with a rectangle raised by 1.2 mm, whose sharp walls lean by 30 degrees."""
+    body = pocket((60, 35), 12, 0.8, 10, 4)
+
+    def frustum(a, b, height):
+        inset = height * math.tan(math.radians(30))
+        rings = []
+        for z, by in ((0, 0), (height, inset)):
+            face = occ.addRectangle(by - a, by - b, z, 2 * (a - by), 2 * (b - by))
+            rings.append(occ.addWire(occ.getCurveLoops(face)[1][0]))
+            occ.remove([(2, face)])
+        return occ.addThruSections(rings, makeSolid=True, makeRuled=True)
+
+    body = occ.fuse(body, frustum(20, 10, 2))[0]
+    by = 0.8 / math.cos(math.radians(30))
+    occ.cut(body, frustum(20 - by, 10 - by, 1.2))
+
+
 def scoop():
     """Make half a tray, open at one end, whose rim is inclined by 8 degrees."""
     body = occ.cut(pocket((50, 30), 24, 1, 10, 5), [(3, occ.addBox(10, -50, -5, 100, 100, 60))])[0]
@@ -130,3 +148,11 @@ def test_pressed():
     net = np.array([[[20 * u, 10 * v, 5 * u * v, 1.0] for u in t] for v in t])[None]
     blank = Blank(np.array([[-30.0, -30], [30, -30], [30, 30], [-30, 30]]), False)
     assert blank.pressed(Surface(net, np.zeros(1, int), ["face"])) == pytest.approx(800.0, rel=1e-12)
+
+
+def test_fillets_that_overlap(tmp_path):
+    """Check that fillets too large for the wall between them are refused: along a wall of 1.2 / cos(30) mm they take
+    (0.8 + 1.68) tan(30) mm."""
+    path = made(tmp_path / "lid.step", embossing)
+    said = call("tool", path, tmp_path / "set", "--thickness", 0.8, expect=2)
+    assert "cannot be rounded by 0.8 and 1.68 mm, as the fillets of neighbouring ones overlap" in said, said

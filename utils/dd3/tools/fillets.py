@@ -15,6 +15,9 @@ from dd3.tools.faces import spans
 ON, PARALLEL = 1e-6, 0.999
 # Divisions of the range of the parameters at which points inside a face are sought, up to this number of points.
 DIVISIONS, POINTS = (4, 12, 40, 130), 8
+# Points of an edge at which the outline of a fillet is taken; relative size of a gap of the outline that is none; lines
+# between points, counted along the outline, that may cross as their edges are tangent.
+OUTLINE, CLOSED, NEAR = 33, 1e-6, 3
 
 
 def rounded(gmsh: Any, side: list[int], edges: dict[int, float]) -> dict[int, int]:
@@ -37,7 +40,47 @@ def rounded(gmsh: Any, side: list[int], edges: dict[int, float]) -> dict[int, in
         old = tag if tag in before else face_of(gmsh, tag, before, tolerance)
         if old is None or old in side:
             origin[tag] = old or 0
+    crossed = [tag for tag, old in origin.items() if not old and crosses_itself(gmsh, tag)]
+    if crossed:
+        at = " ".join(f"{round(value, 2) + 0.0:g}" for value in gmsh.model.occ.getCenterOfMass(2, crossed[0]))
+        raise Problem(f"the sharp edges {spans(list(edges))} cannot be rounded by {in_words(edges.values())}, as the "
+                      f"fillets of neighbouring ones overlap, at {len(crossed)} faces, the first at x y z = {at}: take "
+                      "a smaller --radius, or round them in the CAD program")
     return origin
+
+
+def crosses_itself(gmsh: Any, tag: int) -> bool:
+    """Tell whether the outline of a fillet, between the points of its edges, crosses itself in the plane of its
+    parameters, as where fillets overlap; False if the outline is not closed there, as at a seam."""
+    parts = []
+    try:
+        for _, edge in gmsh.model.getBoundary([(2, tag)], combined=False, oriented=True):
+            low, high = np.ravel(gmsh.model.getParametrizationBounds(1, abs(edge)))
+            t = np.linspace(low, high, OUTLINE)[::1 if edge > 0 else -1]
+            parts.append(np.reshape(gmsh.model.reparametrizeOnSurface(1, abs(edge), t, tag), (-1, 2)))
+    except Exception:  # an edge whose curve on the surface is missing
+        return False
+    start = np.concatenate([part[:-1] for part in parts])
+    size = np.ptp(start, axis=0)
+    gaps = [after[0] - part[-1] for part, after in zip(parts, parts[1:] + parts[:1])]
+    if not (size > 0).all() or (np.abs(gaps) > CLOSED * size).any():
+        return False
+    start = start / size
+    along = np.roll(start, -1, axis=0) - start
+    apart = start[None] - start[:, None]
+
+    def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+        return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
+
+    one, other = along[:, None], along[None]
+    area, number = cross(one, other), np.arange(len(start))
+    parallel = np.abs(area) < CLOSED * np.linalg.norm(one, axis=2) * np.linalg.norm(other, axis=2)
+    way = np.abs(number[:, None] - number)
+    meet = ~parallel & (np.minimum(way, len(start) - way) > NEAR)
+    for direction in (other, one):
+        place = cross(apart, direction) / np.where(parallel, 1.0, area)
+        meet &= (place > 0) & (place < 1)
+    return bool(meet.any())
 
 
 def faces_of_volume(gmsh: Any, volume: int) -> list[int]:
