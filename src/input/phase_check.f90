@@ -7,7 +7,7 @@ module dd3_input_phase_check
   use dd3_input_cushion_check, only : check_cushions
   use dd3_input_case, only : case_t, phase_spec_t, tool_gap_t, tool_vector_t
   use dd3_input_phase_tables, only : check_tables
-  use dd3_input_turn_check, only : check_bends, check_motions, check_tilts, check_turns
+  use dd3_input_turn_check, only : check_motions, check_tilts, check_turns
   use dd3_settings_until, only : until_never
   implicit none
   private
@@ -48,7 +48,6 @@ contains
       call check_cushions(case, case%phase(i), motion == pressed, force, errors)
       turned = turned .or. tilting
       call check_turns(case, case%phase(i), turned, errors)
-      call check_bends(case, i, errors)
       call check_loads(case%phase(i), errors)
       call check_tables(case%phase(i), errors)
     end do

@@ -4,10 +4,9 @@ module dd3_input_turn_check
   use dd3_base_error, only : error_list_t
   use dd3_base_kinds, only : wp
   use dd3_input_case, only : case_t, phase_spec_t
-  use dd3_settings_until, only : until_never
   implicit none
   private
-  public :: check_bends, check_motions, check_tilts, check_turns
+  public :: check_motions, check_tilts, check_turns
 
 contains
 
@@ -98,30 +97,5 @@ contains
     if (any(tilting) .and. phase%contact%mixed) call errors%push_input(phase%source%opened, &
         "tools do not tilt in the mixed formulation", "formulation = compliant", code="E124")
   end subroutine check_tilts
-
-  !> Report a bend of a set that an earlier phase bends to an angle that is not known.
-  subroutine check_bends(case, i, errors)
-    type(case_t), intent(in) :: case
-    !> Number of the phase.
-    integer, intent(in) :: i
-    type(error_list_t), intent(inout) :: errors
-
-    integer :: j, k, m
-
-    do k = 1, size(case%phase(i)%motion)
-      associate (motion => case%phase(i)%motion(k))
-        do j = 1, i - 1
-          if (.not. motion%bends .or. case%phase(j)%until%kind == until_never) cycle
-          associate (earlier => case%phase(j)%motion)
-            if (.not. any([(earlier(m)%bends .and. earlier(m)%set == motion%set, &
-                m=1, size(earlier))])) cycle
-          end associate
-          call errors%push_input(motion%at, "phase '"//case%phase(j)%source%called()// &
-              "' bends '"//motion%set//"' to an angle that is not known, as `until` may end it "// &
-              "early", "no until in a phase with a bend that a later phase continues", code="E144")
-        end do
-      end associate
-    end do
-  end subroutine check_bends
 
 end module dd3_input_turn_check

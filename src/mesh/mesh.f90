@@ -5,7 +5,7 @@ module dd3_mesh_mesh
   use dd3_base_text, only : same_name
   implicit none
   private
-  public :: mark_directions, mesh_t, mesh_set_t, element_set_t, unmoved
+  public :: mark_directions, mesh_t, mesh_set_t, element_set_t, placed, unmoved
 
   !> Placement of a sheet that lies where it was made.
   real(wp), parameter :: unmoved(3, 4) = reshape([real(wp) :: 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0], &
@@ -68,6 +68,17 @@ module dd3_mesh_mesh
   end type mesh_t
 
 contains
+
+  !> Return positions of the initial sheet in its place, without deformation, `(3, :)`, mm.
+  pure function placed(placement, x)
+    !> Rotation and displacement, mm.
+    real(wp), intent(in) :: placement(3, 4)
+    !> mm.
+    real(wp), intent(in) :: x(:, :)
+    real(wp) :: placed(3, size(x, 2))
+
+    placed = matmul(placement(:, :3), x) + spread(placement(:, 4), 2, size(x, 2))
+  end function placed
 
   !> Return the position of a set; 0 if not found.
   pure integer function find_set(self, name)

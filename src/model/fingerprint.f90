@@ -20,7 +20,7 @@ module dd3_model_fingerprint
   end type fingerprint_t
 
   !> Name of the first part. Those that refer to its nodes are not compared if it differs.
-  character(len=*), parameter :: mesh_part = "the mesh"
+  character(len=*), parameter :: mesh_part = "the mesh or its place"
 
 contains
 
@@ -128,8 +128,8 @@ contains
     end do
   end function sheet_digests
 
-  !> Return the check sum of nodes, elements, materials of the elements and material axes; of a
-  !> refined sheet also that of the mesh before.
+  !> Return the check sum of nodes, elements, materials of the elements, material axes and of the
+  !> place where the job begins; of a refined sheet also that of the mesh before.
   integer function mesh_digest(model)
     type(model_t), intent(in) :: model
 
@@ -141,6 +141,10 @@ contains
     call digest%add(reshape(model%connectivity, [size(model%connectivity)]))
     call digest%add(model%material_of)
     call digest%add(reshape(model%axes, [size(model%axes)]))
+    if (allocated(model%x_start)) then
+      call digest%add(reshape(model%placement, [size(model%placement)]))
+      call digest%add(reshape(model%x_start, [size(model%x_start)]))
+    end if
     if (allocated(model%first_digest)) call digest%add(model%first_digest(:1))
     mesh_digest = digest%value()
   end function mesh_digest
@@ -213,7 +217,7 @@ contains
       do s = 1, size(phase%motion)
         associate (motion => phase%motion(s))
           call digest%add([motion%bends, motion%places, motion%prescribes])
-          call digest%add([motion%point, motion%axis, motion%start, motion%angle])
+          call digest%add([motion%point, motion%axis, motion%before, motion%angle])
           call digest%add([motion%coordinate])
           call digest%add(motion%node)
         end associate

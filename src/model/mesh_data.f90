@@ -5,7 +5,7 @@ module dd3_model_mesh_data
   use dd3_base_kinds, only : wp
   use dd3_base_threads, only : least_points, threads_for
   use dd3_element_table, only : element_t
-  use dd3_mesh_mesh, only : unmoved
+  use dd3_mesh_mesh, only : placed, unmoved
   use dd3_model_part, only : part_t
   use dd3_model_sheet_faces, only : sheet_faces_t
   use dd3_model_terms_load_sets, only : load_set_t, pressure_set_t
@@ -84,6 +84,7 @@ module dd3_model_mesh_data
     procedure :: bound_nodes
     procedure :: first_nodes
     procedure :: start_positions
+    procedure :: undeformed_positions
     procedure :: thickness_at
     procedure :: largest_thickness
     procedure :: element_threads
@@ -118,6 +119,14 @@ contains
     x = self%x0
     if (allocated(self%x_start)) x = self%x_start
   end function start_positions
+
+  !> Return the positions that the nodes would have without deformation, `(3, n_node)`, mm.
+  pure function undeformed_positions(self) result(x)
+    class(mesh_data_t), intent(in) :: self
+    real(wp) :: x(3, size(self%x0, 2))
+
+    x = placed(self%placement, self%x0)
+  end function undeformed_positions
 
   !> Return the thickness of the sheet at a node at the start, mm.
   pure real(wp) function thickness_at(self, node)

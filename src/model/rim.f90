@@ -4,6 +4,7 @@
 !> by which *START has brought the sheet to its place.
 module dd3_model_rim
   use dd3_base_kinds, only : wp
+  use dd3_mesh_mesh, only : placed
   use dd3_model_model, only : model_t
   use dd3_model_outward_normals, only : mean_normals
   use dd3_model_sheet_faces, only : area_vector
@@ -73,12 +74,7 @@ contains
     real(wp), intent(in) :: x(:, :)
     real(wp), allocatable :: value(:)
 
-    integer :: i
-
-    allocate (value(size(x, 2)))
-    do i = 1, size(value)
-      value(i) = dot_product(x(:, i) - placed(model, i), model%rim_normal(:, i))
-    end do
+    value = sum((x - model%undeformed_positions())*model%rim_normal, dim=1)
   end function draw_in
 
   !> Return the mean draw-in of the nodes of a set that lie on the rim, mm.
@@ -88,6 +84,7 @@ contains
     real(wp), intent(in) :: x(:, :)
     integer, intent(in) :: node(:)
 
+    real(wp) :: place(3, 1)
     integer :: i, n
 
     mean_draw_in = 0.0_wp
@@ -95,20 +92,12 @@ contains
     do i = 1, size(node)
       associate (direction => model%rim_normal(:, node(i)))
         if (norm2(direction) <= 0.0_wp) cycle
-        mean_draw_in = mean_draw_in + dot_product(direction, x(:, node(i)) - placed(model, node(i)))
+        place = placed(model%placement, model%x0(:, node(i:i)))
+        mean_draw_in = mean_draw_in + dot_product(direction, x(:, node(i)) - place(:, 1))
       end associate
       n = n + 1
     end do
     mean_draw_in = mean_draw_in/real(max(1, n), wp)
   end function mean_draw_in
-
-  !> Return the position that a node would have without deformation, mm.
-  pure function placed(model, node)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: node
-    real(wp) :: placed(3)
-
-    placed = matmul(model%placement(:, :3), model%x0(:, node)) + model%placement(:, 4)
-  end function placed
 
 end module dd3_model_rim

@@ -35,15 +35,18 @@ contains
     type(phase_t), intent(in) :: phase
     type(state_t), intent(inout) :: state
 
-    real(wp) :: angle
+    real(wp) :: angle, before(3, 3)
     integer :: t
 
     do t = 1, size(phase%turn)
       if (.not. phase%turns(t)) cycle
       angle = phase%turn_factor(state%progress)*phase%turn(t)%angle
-      associate (start => state%start%tool_rotation(:, :, t))
-        state%tools%rotation(:, :, t) = matmul(rotation_about(matmul(start, phase%turn(t)%axis), &
-            angle), start)
+      before = state%tools%rotation(:, :, t)
+      associate (start => state%start%tool_rotation(:, :, t), &
+          now => state%tools%rotation(:, :, t), untilted => state%tools%untilted(:, :, t))
+        now = matmul(rotation_about(matmul(start, phase%turn(t)%axis), angle), start)
+        ! Its tilt turns with it.
+        untilted = matmul(now, matmul(transpose(before), untilted))
       end associate
       state%tools%angle(t) = state%start%tool_angle(t) + angle
     end do

@@ -170,7 +170,7 @@ contains
 
     integer :: sizes(n_sizes)
     real(wp) :: thickness(1), placement(3, 4)
-    real(wp), allocatable :: x0(:, :)
+    real(wp), allocatable :: x0(:, :), axes(:, :, :)
     integer, allocatable :: connectivity(:, :), material_of(:), digest(:)
     character(len=:), allocatable :: materials
 
@@ -191,6 +191,8 @@ contains
     call visit_refinement(model, writer)
     call writer%integers("material_of", size(material_of), material_of)
     call writer%integers("material_digest", size(digest), digest)
+    axes = model%axes
+    call writer%reals("material_axes", size(axes), axes)
     call visit_text("materials", materials, writer)
     call visit_sets("", model%set(:model%n_sheet_set), writer)
     if (model%mesh_number > 0) call visit_refined(model, writer)

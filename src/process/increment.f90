@@ -143,12 +143,15 @@ contains
     type(state_t), intent(in) :: trial
     type(linear_problem_t), intent(inout) :: problem
 
+    real(wp) :: undeformed(3, model%n_node)
     integer :: i
 
     problem%target = trial%x
     problem%missed = .false.
     associate (phase => model%phase(trial%phase))
-      problem%missed = size(phase%motion) > 0
+      if (size(phase%motion) == 0) return
+      problem%missed = .true.
+      undeformed = model%undeformed_positions()
       do i = 1, size(phase%motion)
         associate (node => phase%motion(i)%node)
           where (spread(phase%motion(i)%prescribes, 2, size(node))) &
@@ -156,7 +159,7 @@ contains
         end associate
       end do
       do i = 1, size(phase%motion)
-        call motion_displacement(phase%motion(i), model%x0, trial%start%x, &
+        call motion_displacement(phase%motion(i), undeformed, trial%start%x, &
             phase%factor(trial%progress), problem%target)
       end do
     end associate

@@ -179,16 +179,18 @@ contains
 
     !> Part of the motion over which the tangent is taken.
     real(wp), parameter :: part = 1.0e-5_wp
-    real(wp) :: here, ahead(3, model%n_node), behind(3, model%n_node)
+    real(wp) :: here, ahead(3, model%n_node), behind(3, model%n_node), &
+        undeformed(3, model%n_node)
     integer :: i
 
     if (size(phase%motion) == 0) return
     here = phase%factor(committed%progress)
     ahead = 0.0_wp
     behind = 0.0_wp
+    undeformed = model%undeformed_positions()
     do i = 1, size(phase%motion)
-      call motion_displacement(phase%motion(i), model%x0, committed%start%x, here + part, ahead)
-      call motion_displacement(phase%motion(i), model%x0, committed%start%x, here - part, behind)
+      call motion_displacement(phase%motion(i), undeformed, committed%start%x, here + part, ahead)
+      call motion_displacement(phase%motion(i), undeformed, committed%start%x, here - part, behind)
     end do
     prescribed = prescribed + self%progress*phase%slope(committed%progress)/(2.0_wp*part) &
         *(ahead - behind)

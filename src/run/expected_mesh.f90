@@ -116,13 +116,15 @@ contains
   pure logical function is_plain(model)
     type(model_t), intent(in) :: model
 
+    real(wp) :: x(3, model%n_node)
     integer :: f, t
 
+    x = model%start_positions()
     is_plain = .not. any([(model%turns(t), t=1, model%n_tool)])
     do f = 1, size(model%contact_face)
       if (.not. is_plain) return
-      associate (corner => model%x0(:, model%face%corner(:, model%contact_face(f))), &
-          normal => face_normal(model%x0(:, model%face%corner(:, model%contact_face(f)))))
+      associate (corner => x(:, model%face%corner(:, model%contact_face(f))), &
+          normal => face_normal(x(:, model%face%corner(:, model%contact_face(f)))))
         is_plain = size(corner, 2) == 4 .and. abs(normal(3)) > least_upright
       end associate
     end do

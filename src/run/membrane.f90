@@ -112,12 +112,14 @@ contains
     type(model_t), intent(in) :: model
     integer, intent(in) :: tool
 
+    real(wp) :: x(3, model%n_node)
     integer :: node
 
     is_above = .false.
+    x = model%start_positions()
     do node = 1, model%n_node
       if (.not. model%member(tool, node)) cycle
-      is_above = model%x0(3, node) >= maxval(model%x0(3, model%column(:, node)))
+      is_above = x(3, node) >= maxval(x(3, model%column(:, node)))
       return
     end do
   end function is_above

@@ -86,7 +86,7 @@ contains
     do i = 1, phase
       do k = 1, size(case%phase(i)%displace)
         associate (held => case%phase(i)%displace(k))
-          if (abs(held%value) > 0.0_wp) cycle
+          if (held%is_coordinate .or. abs(held%value) > 0.0_wp) cycle
           if (.not. all(model%phase(phase)%prescribed(held%axis, nodes_of(model, held%set)))) cycle
           n = n + 1
           spec(n)%name = held%set
@@ -119,6 +119,7 @@ contains
     type(support_spec_t), intent(in) :: support
     integer, intent(in) :: node(:)
 
+    real(wp) :: start(3, model%n_node)
     logical :: member(model%n_node), held(model%n_node)
     integer :: axis
 
@@ -129,9 +130,10 @@ contains
     if (count(member) > few) return
     member = .false.
     member(node) = .true.
+    start = model%start_positions()
     do axis = 1, 3
       held = member .or. (model%fixed(axis, :) .and. support%fix(axis))
-      associate (x => model%x0(axis, :), tolerance => in_plane*model%thickness)
+      associate (x => start(axis, :), tolerance => in_plane*model%thickness)
         if (any(abs(x(node) - x(node(1))) > tolerance)) cycle
         if (all(held .or. abs(x - x(node(1))) > tolerance)) return
       end associate

@@ -72,6 +72,10 @@ contains
               errors%push_input(case%phase(i)%source%opened, "tool '"// &
               model%tool(spacer%other)%name//"' has a spacer from an earlier phase and is "// &
               "pressed", "a spacer to a tool that is held or moved", code="E144")
+          if (has_turned(model, i, spacer%other)) call errors%push_input( &
+              case%phase(i)%source%opened, "tool '"//model%tool(spacer%other)%name// &
+              "' has a spacer of tool '"//model%tool(spacer%tool)%name//"' and has turned or "// &
+              "tilted", "a spacer to a tool that does not turn", code="E144")
           if (found .or. size(case%phase(i)%spacer) == 0) cycle
           call errors%push_input(case%phase(i)%spacer(1)%at, "no displacement along z gives "// &
               "this gap between '"//model%tool(spacer%tool)%name//"' and '"// &
@@ -81,5 +85,16 @@ contains
       end do
     end do
   end subroutine place_spacers
+
+  !> Whether a tool has turned or tilted at the end of a phase.
+  pure logical function has_turned(model, phase, tool)
+    type(model_t), intent(in) :: model
+    !> Number of the phase.
+    integer, intent(in) :: phase, tool
+
+    integer :: i
+
+    has_turned = any([(model%phase(i)%turns(tool) .or. model%phase(i)%tilts(tool), i=1, phase)])
+  end function has_turned
 
 end module dd3_setup_cushions

@@ -5,7 +5,7 @@ module dd3_setup_displacements
   use dd3_base_kinds, only : wp, pi
   use dd3_base_text, only : axis_name
   use dd3_input_case, only : case_t
-  use dd3_mesh_mesh, only : mark_directions, mesh_t
+  use dd3_mesh_mesh, only : mark_directions, mesh_t, placed
   use dd3_model_motions, only : motion_t, new_motion, new_placement
   use dd3_model_phase, only : phase_t
   implicit none
@@ -55,8 +55,8 @@ contains
       end do
       do k = 1, size(spec%motion)
         node = mesh%nodes_of(spec%motion(k)%set)
-        call new_motion(motion(k), node, mesh%x, spec%motion(k)%bends, spec%motion(k)%value, &
-            bend_before(case, i, spec%motion(k)%set))
+        call new_motion(motion(k), node, placed(mesh%placement, mesh%x), spec%motion(k)%bends, &
+            spec%motion(k)%value, bend_before(case, i, spec%motion(k)%set))
         call mark_directions(displaced, node, motion(k)%prescribes)
       end do
       call move_alloc(motion, phase%motion)
@@ -65,7 +65,7 @@ contains
     call list_kept(case, i, mesh, led .and. .not. (fixed .or. displaced), phase%kept_displacements)
   end subroutine set_displacements
 
-  !> Return the angle to which earlier phases have bent a set, rad.
+  !> Return the angle to which earlier phases bend a set, rad, unless they end early.
   pure real(wp) function bend_before(case, i, set) result(angle)
     type(case_t), intent(in) :: case
     !> Number of the phase.

@@ -3,8 +3,10 @@
 module dd3_setup_gaps
   use dd3_base_error, only : error_list_t
   use dd3_base_kinds, only : wp
-  use dd3_input_case, only : case_t
+  use dd3_input_case, only : case_t, tool_gap_t
   use dd3_model_model, only : model_t
+  use dd3_model_progress_table, only : table_value
+  use dd3_settings_until, only : until_never
   use dd3_tools_separation, only : offset_at_gap
   implicit none
   private
@@ -29,6 +31,8 @@ contains
         associate (spec => case%phase(i)%gap(k))
           gap = spec%value
           if (spec%in_thicknesses) gap = gap*model%thickness
+          call check_place(model, i, spec%tool, spec, errors)
+          call check_place(model, i, spec%other, spec, errors)
           associate (tool => model%tool(spec%tool), other => model%tool(spec%other))
             call offset_of_gap(model, i, spec%tool, spec%other, gap, &
                 model%phase(i)%gap_offset(spec%tool), found)
@@ -40,6 +44,33 @@ contains
       end do
     end do
   end subroutine set_gaps
+
+  !> Report a gap of a tool whose place along x and y is not known beforehand.
+  subroutine check_place(model, phase, tool, spec, errors)
+    type(model_t), intent(in) :: model
+    !> Number of the phase, and of the tool.
+    integer, intent(in) :: phase, tool
+    type(tool_gap_t), intent(in) :: spec
+    !> Errors found are added.
+    type(error_list_t), intent(inout) :: errors
+
+    integer :: i
+    logical :: strays
+
+    do i = 1, phase
+      associate (earlier => model%phase(i))
+        strays = i < phase .and. earlier%until%kind /= until_never .and. &
+            any(abs(earlier%move(:2, tool)) > 0.0_wp)
+        if (earlier%pressed(tool)) strays = any(abs(earlier%direction(:2, tool)) > 0.0_wp)
+        if (.not. strays) cycle
+        call errors%push_input(spec%at, "the gap is not known beforehand, as phase '"// &
+            earlier%name//"' moves tool '"//model%tool(tool)%name//"' aside by a way that is "// &
+            "not known: it may end early, or presses the tool obliquely", &
+            "a move in place of the gap", code="E144")
+        return
+      end associate
+    end do
+  end subroutine check_place
 
   !> Find z of the displacement of a tool relative to another one at which their gap has a value at
   !> the end of a phase, mm.
@@ -60,7 +91,8 @@ contains
         found)
   end subroutine offset_of_gap
 
-  !> Return how far `move` has moved a tool along x and y at the end of a phase, mm.
+  !> Return how far `move` has moved a tool along x and y at the end of a phase, at the factor 1 of
+  !> its table, mm.
   pure function aside(model, phase, tool)
     type(model_t), intent(in) :: model
     !> Number of the phase.
@@ -70,9 +102,10 @@ contains
 
     integer :: i
 
-    aside = 0.0_wp
-    do i = 1, phase
-      aside = aside + model%phase(i)%move(:2, tool)
+    aside = model%phase(phase)%move(:2, tool)
+    do i = 1, phase - 1
+      aside = aside + table_value(model%phase(i)%move_table, 1.0_wp) &
+          *model%phase(i)%move(:2, tool)
     end do
   end function aside
 

@@ -3,12 +3,15 @@
 !> cuts.
 module dd3_setup_sheet
   use dd3_base_error, only : error_list_t
+  use dd3_base_kinds, only : wp
   use dd3_base_text, only : same_name
-  use dd3_input_case, only : case_t
+  use dd3_input_case, only : case_t, material_spec_t
+  use dd3_input_fill_material, only : frame_of
   use dd3_mesh_build, only : new_mesh
   use dd3_mesh_mesh, only : mesh_t
   use dd3_model_model, only : model_t
   use dd3_element_table, only : element_t
+  use dd3_setup_axes, only : direction_text
   use dd3_setup_element, only : set_element_of_mesh
   use dd3_sheet_grid, only : grid_t, new_grid
   use dd3_sheet_marks, only : find_levels
@@ -17,6 +20,10 @@ module dd3_setup_sheet
   implicit none
   private
   public :: new_sheet
+
+  !> Difference of the cosine of the angle between directions from 1 up to which they are one; the
+  !> laws do not know a direction from its opposite.
+  real(wp), parameter :: same_axis = 1.0e-9_wp
 
 contains
 
@@ -99,7 +106,7 @@ contains
   subroutine match_materials(sheet, model, case, errors)
     !> Its elements get the positions in `case%material`.
     type(sheet_t), intent(inout) :: sheet
-    type(model_t), intent(in) :: model
+    type(model_t), intent(inout) :: model
     type(case_t), intent(in) :: case
     !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
@@ -126,7 +133,50 @@ contains
         end if
       end associate
     end do
-    if (errors%count == 0) sheet%mesh%material = position(sheet%mesh%material)
+    if (errors%count > 0) return
+    sheet%mesh%material = position(sheet%mesh%material)
+    if (.not. allocated(sheet%axes)) return
+    do i = 1, size(position)
+      if (position(i) > 0) call match_axes(sheet%axes(:, :, i), case%material(position(i)), &
+          model%axes(:, :, position(i)), errors)
+    end do
   end subroutine match_materials
+
+  !> Take over the axes of a material of the sheet; directions that the input gives must be these.
+  subroutine match_axes(of_sheet, material, axes, errors)
+    real(wp), intent(in) :: of_sheet(3, 3)
+    type(material_spec_t), intent(in) :: material
+    real(wp), intent(inout) :: axes(3, 3)
+    !> Errors found are added.
+    type(error_list_t), intent(inout) :: errors
+
+    real(wp) :: frame(3, 3), normal(3)
+
+    if (.not. any(abs(of_sheet) > 0.0_wp)) return
+    associate (source => material%source)
+      if (source%given("rolling_direction")) then
+        frame = frame_of(source%numbers("rolling_direction"), of_sheet(:, 3))
+        call compare("rolling_direction", frame(:, 1), of_sheet(:, 1))
+      end if
+      if (source%given("normal_direction")) then
+        normal = source%numbers("normal_direction")
+        call compare("normal_direction", normal/norm2(normal), of_sheet(:, 3))
+      end if
+    end associate
+    axes = of_sheet
+
+  contains
+
+    subroutine compare(key, direction, known)
+      character(len=*), intent(in) :: key
+      real(wp), intent(in) :: direction(3), known(3)
+
+      if (1.0_wp - abs(dot_product(direction, known)) <= same_axis) return
+      call errors%push_input(material%source%at(key), key//" of material '"//material%name// &
+          "' is another one than that of the sheet, which keeps its own: "//direction_text(known), &
+          "the direction in the initial sheet of the first run, or no "//key, code="E152")
+    end subroutine compare
+
+  end subroutine match_axes
 
 end module dd3_setup_sheet

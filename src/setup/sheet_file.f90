@@ -132,7 +132,7 @@ contains
       call read_block(file, "mesh/x0", size(mesh%x), mesh%x, ok)
       call read_reals(file, "mesh/thickness", thickness, ok)
       mesh%thickness = thickness(1)
-      ! The files of other programs and of earlier versions have none.
+      ! The files of other programs and of earlier versions have no placement and axes.
       call dataset_size(file, "mesh/placement", n)
       if (n >= 0) call read_block(file, "mesh/placement", 12, mesh%placement, ok)
       call read_integer_block(file, "mesh/connectivity", size(mesh%connectivity), &
@@ -142,6 +142,11 @@ contains
       call read_names(file, "mesh/materials", sheet%material, ok)
       allocate (sheet%digest(size(sheet%material)))
       call read_integers(file, "mesh/material_digest", sheet%digest, ok)
+      call dataset_size(file, "mesh/material_axes", n)
+      if (n == 9*size(sheet%material)) then
+        allocate (sheet%axes(3, 3, size(sheet%material)))
+        call read_block(file, "mesh/material_axes", n, sheet%axes, ok)
+      end if
       call read_sets(file, "mesh/", mesh%set, ok)
     end associate
   end subroutine read_mesh

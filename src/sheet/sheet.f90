@@ -22,6 +22,8 @@ module dd3_sheet_sheet
     !> Names of the materials, and the check sums of their parameters.
     type(text_t), allocatable :: material(:)
     integer, allocatable :: digest(:)
+    !> Their axes as in `model_t`, `(3, 3, :)`; not allocated if unknown.
+    real(wp), allocatable :: axes(:, :, :)
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), allocatable :: x(:, :)
     !> Whether the sheet has the state below; it is unstressed otherwise.

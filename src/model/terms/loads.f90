@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Loads of the input, each the total force on a node set, and the weight of the sheet. They grow
-!> from their values at the start of the phase to those of the input.
+!> from their values at the start of the phase to those of the input: loads by the table of the
+!> phase, the weight in proportion, and over the next phase if this one ends early.
 !>
 !> A sheet whose supports leave it free, above the tools or on a few points of them, has no
 !> equilibrium under its weight until it lies on the tools. Its weight acts at once; forces opposite
@@ -50,6 +51,7 @@ module dd3_model_terms_loads
     procedure, private :: set_laying
     procedure, private :: lays_down
     procedure, private :: laying_forces
+    procedure, private :: change
   end type loads_t
 
 contains
@@ -138,9 +140,12 @@ contains
     integer :: s
 
     self%start = self%now
-    self%final = model%phase(number)%loads%final
-    where (spread(model%phase(number)%loads%keeps, 1, 3)) self%final = self%start
     do s = 1, size(model%load_set)
+      if (.not. model%phase(number)%loads%keeps(s)) then
+        self%final(:, s) = model%phase(number)%loads%final(:, s)
+      else if (model%load_set(s)%name /= gravity_name) then
+        self%final(:, s) = self%start(:, s)
+      end if
       associate (set => model%load_set(s), from => self%start(:, s), to => self%final(:, s))
         if (set%name /= gravity_name .or. norm2(from) > 0.0_wp .or. .not. norm2(to) > 0.0_wp) cycle
         if (.not. is_free(model, number, state%x)) cycle
@@ -215,10 +220,27 @@ contains
 
     if (self%lays_down()) force = force + step*(laying_rate(committed%progress) &
         *self%laying_forces(model, committed))
-    associate (factor => step*model%phase(committed%phase)%slope(committed%progress))
-      call nodal_forces(model%load_set, factor*(self%final - self%start), force)
+    associate (phase => model%phase(committed%phase), progress => committed%progress)
+      call nodal_forces(model%load_set, step*self%change(model, phase%slope(progress), &
+          phase%fading_rate(progress)), force)
     end associate
   end subroutine add_rate
+
+  !> Return the change of the loads over the phase times a factor, `(3, n_load)`, N.
+  pure function change(self, model, factor, factor_of_weight)
+    class(loads_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: factor, factor_of_weight
+    real(wp) :: change(3, size(self%now, 2))
+
+    integer :: s
+
+    change = factor*(self%final - self%start)
+    do s = 1, size(model%load_set)
+      if (model%load_set(s)%name == gravity_name) &
+          change(:, s) = factor_of_weight*(self%final(:, s) - self%start(:, s))
+    end do
+  end function change
 
   !> Set loads and laying forces in a trial state.
   subroutine evaluate(self, model, committed, trial)
@@ -226,8 +248,9 @@ contains
     type(model_t), intent(in) :: model
     type(configuration_t), intent(in) :: committed, trial
 
-    associate (factor => model%phase(trial%phase)%factor(trial%progress))
-      self%now = self%start + factor*(self%final - self%start)
+    associate (phase => model%phase(trial%phase), progress => trial%progress)
+      self%now = self%start + self%change(model, phase%factor(progress), &
+          1.0_wp - phase%fading(progress))
     end associate
     if (self%lays_down()) then
       self%laying_left = laying_factor(trial%progress)*self%laying_forces(model, trial)
