@@ -24,15 +24,17 @@ contains
 
     real(wp) :: gap
     logical :: found
-    integer :: i, k
+    integer :: i, k, before
 
     do i = 1, size(case%phase)
       do k = 1, size(case%phase(i)%gap)
         associate (spec => case%phase(i)%gap(k))
           gap = spec%value
           if (spec%in_thicknesses) gap = gap*model%thickness
+          before = errors%count
           call check_place(model, i, spec%tool, spec, errors)
           call check_place(model, i, spec%other, spec, errors)
+          if (errors%count > before) cycle
           associate (tool => model%tool(spec%tool), other => model%tool(spec%other))
             call offset_of_gap(model, i, spec%tool, spec%other, gap, &
                 model%phase(i)%gap_offset(spec%tool), found)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-#: {"name": "operations", "arguments": ["--only", "released", "placed", "carried", "refined", "cut_bend", "dynain", "restruck",
+#: {"name": "operations", "arguments": ["--only", "released", "placed", "bent_on", "carried", "refined", "cut_bend", "dynain", "restruck",
 #:  "refused"], "timeout": 900}
 #: {"name": "operations_more", "arguments": ["--only", "turned", "cut_wall", "cut_on_sheet", "cut_by_elements"],
 #:  "labels": ["case", "slow"], "timeout": 900, "cost": 50}
@@ -13,6 +13,7 @@
   turned between the two.
 - placed: the draw-in of a sheet that is pressed in two operations does not depend on where it is placed between them, nor
   is a plastic strain that a prescribed displacement makes taken for one of fading forces.
+- bent_on: a strip that is bent, taken over, turned and moved, and bent on has the arc of its whole angle in its place.
 - turned: a bent strip that is turned about an oblique axis is released as the one that is not: equal shape and strains.
 - carried: a bent strip of a material with two surfaces, back-stress, rate, temperature, damage and forming limit keeps
   all internal variables where it is taken over; released, they are those of the strip that is turned.
@@ -185,6 +186,27 @@ def placed(bench):
     check_values(*(Value(f"placed {number}: {name}", expected, found, 1e-6) for number, line in enumerate(values[1:], 1)
                    for name, expected, found in zip(names, values[0], line)),
                  Value("placed: largest draw-in, mm", 1.25, values[0][2], 1e-6))
+
+
+def bent_on(bench):
+    """Bend the end of a sheet by 18 degrees in one run, and from there to 36 degrees in another, in another place."""
+    def deck(start, bend):
+        return (f"{start}{MATERIAL}*BOUNDARY left\n  set = x_min\n  fix = x y z\n*HISTORY right\n  set = x_max\n"
+                f"  quantities = position\n*PHASE bend\n  control = load\n  trial = 0.1\n  keep = ${{keep}}\n  bend = x_max {bend}\n")
+
+    sheet = ("*PARAMETER\n  keep = on\n*BLANK sheet\n  size = 40 10 1\n  divisions = 10 1 1\n  material = mild_steel\n")
+    once = bench.run("bent_once", deck(sheet, "0 5 0.5  0 -1 0  18"))
+    start = "*PARAMETER\n  keep = off\n*START\n  from = bent_once.out\n  turn = 0 0 0  0 0 1  90\n  move = 0 0 25\n"
+    again = bench.run("bent_on", deck(start, "-5 0 25.5  1 0 0  36"))
+    values = []
+    for run, along, bottom, angle in ((once, "x", 0.5, np.radians(18)), (again, "y", 25.5, np.radians(36))):
+        values += [Value(f"{run.folder.stem}: along the strip, mm", 40 * np.sin(angle) / angle, run.last(f"right_{along}"), 1e-9),
+                   Value(f"{run.folder.stem}: height, mm", bottom + 40 * (1 - np.cos(angle)) / angle, run.last("right_z"), 1e-9)]
+    check_values(*values)
+    # A state at the end of a phase that an earlier run has left is none of this run.
+    bench.run("bent_once", bench.work / "bent_once.dat", {"keep": "off"})
+    found = bench.refuse("bent_from_old", deck(start.replace("bent_once.out", "bent_once.out/bend"), "-5 0 25.5  1 0 0  36"))
+    check("E152" in found and "does not exist" in found, found)
 
 
 def turned(bench):
@@ -397,6 +419,8 @@ def refused(bench):
                    "E153", "misses the sheet"),
         "open": (start.format("draw.out") + "*TRIM t\n  points = 0 0 0  5 0 0  9 1 0  14 5 0\n" + UNLOAD, "E153",
                  "is open"),
+        "rolling": (start.format("draw.out").replace("  young", "  rolling_direction = 0 1 0\n  young") + UNLOAD, "E152",
+                    "rolling_direction of material 'mild_steel'"),
         "set": (start.format("draw.out") + "*HISTORY h\n  set = nothing\n  quantities = position\n" + UNLOAD, "E113",
                 "there is no set"),
     }
@@ -410,7 +434,7 @@ def refused(bench):
     bench.run("unended_last", start.format("unended.out\n  at = last") + UNLOAD, codes=(0,))
 
 
-TESTS = (released, placed, turned, carried, refined, cut_wall, cut_bend, cut_on_sheet, cut_by_elements, dynain, restruck,
+TESTS = (released, placed, bent_on, turned, carried, refined, cut_wall, cut_bend, cut_on_sheet, cut_by_elements, dynain, restruck,
          refused)
 
 

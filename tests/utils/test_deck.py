@@ -90,6 +90,15 @@ def test_values(tmp_path):
     assert job.path.name == "b.dat" and not job.changed
 
 
+def test_marks_of_comments_in_quotes(tmp_path):
+    """Check that # and ! inside quotes begin no comment, as in the program, and that other quotes hide none."""
+    (tmp_path / "a.dat").write_text("*MESH m\n  file = \"a#b.inp\" # c 'd'\n  material = punch's ! it's\n")
+    job = deck.read("a.dat")
+    assert job["MESH"]["file"] == '"a#b.inp"' and job["MESH"]["material"] == "punch's"
+    job["MESH"]["file"] = '"n!.inp"'
+    assert str(job).splitlines()[1] == "  file = \"n!.inp\"  # c 'd'"
+
+
 def test_errors(tmp_path):
     """Check that errors name file and line, and say what there is."""
     (tmp_path / "a.dat").write_text(TEXT)

@@ -64,7 +64,7 @@ def measured(folder, drawn, free, text, *options, expect=0):
     history = HISTORY
     write_run(folder / "run", drawn, free, cells, history, "phase\n", {"displacement": (drawn - flat, free - flat)},
               phases=PHASES)
-    (folder / "f.toml").write_text('face = "lower"\n' + text)
+    (folder / "f.toml").write_text(text if text.startswith("face") else 'face = "lower"\n' + text)
     said = call("deviation", folder / "run", "--fixture", folder / "f.toml", *options, expect=expect)
     found = {path.stem: pd.read_csv(path) for path in (folder / "run" / "deviation").glob("*.csv")}
     return said, found
@@ -108,6 +108,20 @@ tolerance = 0.01
     assert np.allclose(found["points"]["deviation"], expected, atol=2e-5)
     assert np.abs(found["supports"]["gap"]).max() < 1e-9
     assert "not good: point middle, point corner" in said
+
+
+@pytest.mark.parametrize("inwards", [False, True])
+@pytest.mark.parametrize("face", ["lower", "upper"])
+def test_solid_as_nominal_shape(tmp_path, face, inwards):
+    """Measure a plate that lies 0.7 of its thickness too low, from a solid: from the side of the measured face, not
+    from the nearest one."""
+    flat, _ = plate()
+    box = pyvista.Box((0, 40, 0, 10, 0, 1), level=9).triangulate()
+    (box.flip_faces() if inwards else box).save(tmp_path / "box.stl")
+    said, _ = measured(tmp_path, flat, flat - [0, 0, 0.7],
+                       f'face = "{face}"\ntolerance = 0.5\n[nominal]\nsurface = "box.stl"\n[alignment]\nby = "none"\n',
+                       "--verdict", expect=1)
+    assert ("-0.7000 to -0.7000" if face == "upper" else "+0.7000 to +0.7000") in said, said
 
 
 def test_best_fit_and_section(tmp_path):

@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from dd3 import forming_limit, marciniak_kuczynski, places
 from dd3.errors import Problem
 from dd3.flc import calibrated
-from dd3.forming_limit_curve import read_curve
+from dd3.forming_limit_curve import keeler_brazier, read_curve
 from dd3.laws import Material
 from dd3.marciniak_kuczynski import RATIO, Groove, Path, Sheet, ratios_of
 
@@ -212,3 +212,35 @@ def test_of_run(monkeypatch):
     for words, text in (((), "takes a number"), (("--curve", "x.csv"), "goes without")):
         given = ["1.5"] if not words else ["0.99"]
         assert text in call("fld", "nosuch", "--flc-from-material", *given, *words, expect=2)
+
+
+class Tailored:
+    """Fields of a sheet of two materials, the first of 0.8 mm, the second of 2 mm, and nodes between."""
+
+    def __init__(self, thickness):
+        self.grid = {"PointData": {"material": 0}, "CellData": {"material": 0}}
+        self.table = {"thickness": np.array(thickness), "material": np.array([1] * 20 + [0] * 2 + [2] * 20)}
+
+    def values(self, step, name, at_cells=False):
+        """Return a field."""
+        return self.table[name], name
+
+
+def test_of_tailored_sheet():
+    """Check that each material has the curve of its own thickness and exponent, and that a sheet of one material and two
+    thicknesses has that of the thinner part."""
+    exponents = (0.2, 0.18)
+    job = {"materials": [{"name": name, "hardening": {"name": "swift", "parameters": [{"name": "n", "value": n}]}}
+                         for name, n in zip("ab", exponents)],
+           "input": {"blocks": [{"keyword": "material", "name": name, "entries": [
+               {"key": "grade", "text": "low_carbon_steel"}]} for name in "ab"]}}
+    fields = Tailored([0.8] * 20 + [1.1] * 2 + [1.7] + [2.0] * 19)
+    curves = forming_limit.find_limits(fields, job, forming_limit.Criteria()).by_material
+    for number, thickness, n in zip((1, 2), (0.8, 2.0), exponents):
+        assert curves[number].limit(0.0) == pytest.approx(keeler_brazier(thickness, n).limit(0.0))
+    job["materials"][1]["hardening"]["parameters"][0]["value"] = exponents[0]
+    even = Tailored([0.8] * 42)
+    assert forming_limit.find_limits(even, job, forming_limit.Criteria()).curve is not None
+    del job["materials"][1]
+    curve = forming_limit.find_limits(fields, job, forming_limit.Criteria()).curve
+    assert curve.limit(0.0) == pytest.approx(keeler_brazier(0.8, exponents[0]).limit(0.0))

@@ -432,3 +432,23 @@ def test_teodosiu_hu(program):
     write("curve.txt", *zip(*rows[:20]))
     assert "no back-stress can be identified" in call("fit", "steel", "teodosiu_hu", "curve.txt", "--program", program,
                                                       expect=2)
+
+
+@pytest.mark.parametrize("ends", [(0.04, -0.02), (-0.04, 0.02), (-0.03, 0.02, -0.02)])
+def test_first_branch(program, ends):
+    """Check that a curve with reversals gives the parameters of its law, whether it begins in tension or compression."""
+    laws = {"hardening": "voce Y0=200 Rsat=150 CR=12", "backstress": "lemaitre_chaboche CX=40 Xsat=80"}
+    point, strain, rows = dd3.material({**STEEL, **laws}).point(), 0.0, []
+    for end in ends:
+        count = round(abs(end - strain) / 0.001)
+        step = (end - strain) / count
+        for _ in range(count):
+            point.pull(step)
+            strain += step
+            rows.append((strain, point.stress[0]))
+    write("curve.txt", *zip(*rows))
+    text, said = identified(program, "voce", "curve.txt", "--young", 206000, "--starts", 1, "--backstress",
+                            "lemaitre_chaboche", command="fit")
+    for key, law in laws.items():
+        wanted = {name: float(value) for name, value in re.findall(r"(\w+)=(\S+)", law)}
+        assert numbers(text, key) == pytest.approx(wanted, rel=0.01), said

@@ -130,6 +130,23 @@ def test_force_and_energy(tmp_path) -> None:
     assert "takes a RUN or --table" in call("press", expect=2)
 
 
+def test_withdrawn_ram(tmp_path) -> None:
+    """A punch that is withdrawn by more than its stroke in another phase has its bottom dead centre before that."""
+    run = history(tmp_path / "run", lambda travel: 400 * travel)
+    table = pd.read_csv(run / "history.csv")
+    way = np.linspace(0, 200, 21)[1:]
+    back = pd.DataFrame({**table.iloc[-1], "increment": np.arange(501, 521), "phase": "springback", "punch_uz": way - 50,
+                         "punch_fz": 0.0})
+    pd.concat([table, back]).to_csv(run / "history.csv", index=False)
+    (run / "run.json").write_text(json.dumps({
+        "format": "dd3imp run", "format_version": 2, "program": {"name": "dd3imp", "version": "1"}, "title": "",
+        "phases": [{"name": name, "tools": [{"name": "punch", "motion": motion, "displacement": [0, 0, -50]}]}
+                   for name, motion in (("draw", "moved"), ("springback", "withdrawn"))]}))
+    course = course_of(run)
+    assert course["height"].iloc[0] == 50.0 and course["height"].iloc[-1] == 0.0
+    assert course["force"].max() == pytest.approx(20.0) and course["energy"].iloc[-1] == pytest.approx(0.5)
+
+
 def test_table() -> None:
     """The table has the path of the crank at equal parts of the time; the duration is that of its angle."""
     said = call("press", "--stroke", 400, "--rod", 1500, "--table", 60, "--points", 5, "--rate", 30).splitlines()

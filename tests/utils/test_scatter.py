@@ -201,7 +201,13 @@ def test_wrong_descriptions_are_refused(program) -> None:
                           ({"results": '["thinning@a"]', "places": "{ a = 9 }"}, "expected x and y"),
                           ({"results": "[]", "bands": '["thinning"]'}, "'thinning' is no band"),
                           ({"results": '["springback@a"]', "places": "{ a = [1, 1] }"}, "no springback"),
-                          ({"results": '["forming_limit"]'}, "no forming limit curve")):
+                          ({"results": '["forming_limit"]'}, "no forming limit curve"),
+                          ({"seed": '"x"'}, "seed is 'x'; expected a whole number"),
+                          ({"set": "[1]"}, "expected a table of keys"), ({"results": '"right_rx"'}, "expected a list"),
+                          ({"correlations": '[["a"]]'}, "expected rows of numbers"),
+                          ({"limits": "{ right_rx = '5' }"}, "the limit of 'right_rx' is '5'; expected a number"),
+                          ({"set": "{ strain = 9 }"}, "'strain' is an input and in set")):
+        more = {"results": '["right_rx"]', **more}
         bar(**more)
         assert message in call("scatter", "bar.toml", "--program", program, "--cores", 2, expect=2)
 

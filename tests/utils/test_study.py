@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+import pytest
 from helpers import call
 
 from dd3.study.response import Parameter, fit
@@ -87,6 +88,28 @@ def test_study(program):
     deck.write_text(DECK.replace("size = 4 2 1", "size = 4 4 1"))
     call(*words)
     assert abs(float(rows_of(Path("bar.study"))[0]["right_rx"]) / float(rows[0]["right_rx"]) - 2) < 0.01
+
+
+def test_files_of_runs(program):
+    """Check that a run is made again where a file that its input names has changed, an included one or one of a law
+    whose name has a blank."""
+    Path("law").mkdir()
+    law, rest = Path("law", "my curve.txt"), DECK[DECK.index("*MATERIAL"):DECK.index("*BOUNDARY")]
+    law.write_text("0 200\n0.5 400\n")
+    Path("law", "m.inc").write_text(rest.replace("${hardening}", 'table file="my curve.txt"'))
+    Path("bar.dat").write_text(DECK.replace(rest, "*INCLUDE law/m.inc\n"))
+    words = ("study", "bar.dat", "--program", program, "--vary", "strain=0.02", "--result", "right_rx")
+    found = []
+    for change in (lambda: None, lambda: law.write_text("0 400\n0.5 800\n"), lambda: None,
+                   lambda: Path("law", "m.inc").write_text(rest.replace("${hardening}", "perfect Y0=100"))):
+        change()
+        time.sleep(0.01)
+        call(*words)
+        row = rows_of(Path("bar.study"))[0]
+        found.append((float(row["right_rx"]), row["seconds"]))
+    forces = [force for force, _ in found]
+    assert forces[1] / forces[0] == pytest.approx(2, rel=0.01) and forces[3] < forces[0]
+    assert found[2] == found[1]
 
 
 def test_surface(program):

@@ -20,7 +20,8 @@ import numpy as np
 from dd3.errors import Problem
 
 INDENT = "  "
-COMMENT = re.compile(r"\s*[#!].*", re.DOTALL)
+# Words as the program takes them: a quote is one at the beginning of a word.
+WORDS = re.compile(r"""(?:[\s=]|"[^"]*"|'[^']*'|[^\s=#!"'][^\s=#!]*)*""")
 LINE = re.compile(r"[^\r\n]*(?:\r\n|\r|\n)|[^\r\n]+")
 WORD = re.compile(r"""["']([^"']*)["']|([^\s"'=]+)""")
 
@@ -38,6 +39,13 @@ def text_of(value: Any) -> str:
     return str(value)
 
 
+def before_comment(text: str) -> str:
+    """Return a line up to its comment; a mark of one inside quotes is none."""
+    words = WORDS.match(text)
+    end = words.end() if words else 0
+    return text[:end] if text[end:end + 1] in ("", "#", "!") else re.split("[#!]", text, maxsplit=1)[0]
+
+
 class Statement:
     """A statement of a file: its lines, more than one where it is continued, and the number of the first, from 1."""
 
@@ -46,17 +54,16 @@ class Statement:
 
     def text(self) -> str:
         """Return the statement without comments and signs of continuation."""
-        return " ".join(COMMENT.sub("", line).strip().removesuffix("&").strip() for line in self.lines).strip()
+        return " ".join(before_comment(line).strip().removesuffix("&").strip() for line in self.lines).strip()
 
     def change(self, value: str) -> None:
         """Put another value behind the equals sign; key, indentation and comment of the first line stay."""
         head, _, rest = self.lines[0].partition("=")
-        found = COMMENT.search(rest)
-        old = rest[:found.start()] if found else rest.rstrip()
+        place = len(before_comment(rest))
+        old, comment = rest[:place].rstrip(), rest[place:].strip()
         new = " " * (len(old) - len(old.lstrip())) + value
-        comment = found[0].strip() if found else ""
-        if found and comment:  # in its column, if there is room
-            comment = " " * max(1, found.end() - len(found[0].lstrip()) - len(new)) + comment
+        if comment:  # in its column, if there is room
+            comment = " " * max(1, place - len(new)) + comment
         self.lines = [f"{head}={new}{comment}" + self.lines[0][len(self.lines[0].rstrip("\r\n")):]]
 
 
@@ -276,7 +283,7 @@ def statements(text: str) -> Iterator[Statement]:
     lines = LINE.findall(text)
     if lines and not lines[-1].endswith(("\n", "\r")):
         lines[-1] += "\n"
-    open_ = [COMMENT.sub("", line).strip().endswith("&") for line in lines]
+    open_ = [before_comment(line).strip().endswith("&") for line in lines]
     starts = [i for i in range(len(lines)) if i == 0 or not open_[i - 1]]
     for first, last in pairwise([*starts, len(lines)]):
         yield Statement(lines[first:last], first + 1)

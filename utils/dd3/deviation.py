@@ -34,6 +34,7 @@ from dd3.nominal import (
     of_material,
     read_surface,
     sheet_surface,
+    side_of_body,
     turned_to,
 )
 from dd3.programs import made_folder
@@ -107,7 +108,8 @@ class Comparison:
     def __init__(self, fixture: Fixture, sheet: Sheet, step: int, wanted: Face | None = None) -> None:
         self.fixture, self.part = fixture, face_of(sheet, step, fixture.upper)
         self.wanted = wanted or (None if fixture.surface else nominal_face(fixture, sheet))
-        surface = read_surface(fixture.surface) if fixture.surface else self.wanted.surface  # type: ignore[union-attr]
+        surface = (side_of_body(read_surface(fixture.surface), self.part.surface) if fixture.surface
+                   else self.wanted.surface)  # type: ignore[union-attr]
         self.nominal = turned_to(surface, self.part.surface)
         self.weights = sheet.areas(step)[self.part.nodes]
         if fixture.alignment != NONE:

@@ -7,7 +7,6 @@ nominal coordinate. A one-sided one is a pad, a plane tool across its direction 
 pushes from the other face of the sheet, with the node there.
 """
 
-import re
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -17,7 +16,7 @@ from dd3.deviation import Comparison, Face
 from dd3.errors import Problem
 from dd3.fixture import LOCATORS, Fixture, Support
 from dd3.nominal import line_distances, of_material
-from dd3.run import read_job
+from dd3.run import FILE, read_job
 from dd3.sheet import AXES, LOWER, UPPER
 
 ALONG = 1 - 1e-6  # cosine between a direction and an axis
@@ -25,7 +24,6 @@ TRIAL = 0.25  # of a phase
 PAD = 20.0  # half a side of a pad, over the thickness; it has contact with one node, which it must not lose
 AWAY = 2.0  # distance of a pad from the sheet at the start, over the thickness
 LAYER = 0.002  # of the contact with pads, over the thickness
-FILE = re.compile(r'\bfile\s*=\s*(?:"([^"]+)"|([^"\s]+))')
 
 
 def write_deck(found: Comparison, path: Path) -> None:
@@ -37,7 +35,7 @@ def write_deck(found: Comparison, path: Path) -> None:
     found.align()
     axis, angle = found.motion.axis_angle()
     lines = [f"# {fixture.title}: made by dd3 deviation --deck from {fixture.path.name}.",
-             "*START", f"  from = {run.resolve()}",
+             "*START", f'  from = "{run.resolve()}"',
              f"  turn = 0 0 0  {numbers(axis)}  {angle:.12g}", f"  move = {numbers(found.motion.shift)}"]
     lines += materials(read_job(run), fixture)
     for name in fixture.mirror:

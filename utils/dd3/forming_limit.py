@@ -17,6 +17,9 @@ from dd3.sheet import Sheet
 from dd3.surface_strain import cell_strains
 from dd3.verdict import THINNING
 
+# Part of the nodes of a thinner part of a tailored sheet at least, and ratio of the median to its thickness.
+THIN, VARIES = 0.1, 1.05
+
 
 @dataclass
 class Limits:
@@ -88,9 +91,11 @@ def find_limits(fields: Fields, job: dict[str, Any], criteria: Criteria, account
         if exponent is None:
             raise Problem("--low-carbon-steel: the hardening law has no exponent n; give --n")
         return Limits(keeler_brazier(thickness_of(fields), exponent), "", thinning, given_by)
-    found = [curve_of(fields, material, entries) for material, entries in zip(materials, said)]
+    numbers = [job["materials"].index(material) + 1 for material in materials]
+    found = [curve_of(fields, material, entries, number if len(materials) > 1 else None)
+             for number, material, entries in zip(numbers, materials, said)]
     names = " and ".join(material["name"] for material in materials)
-    if len(found) == 1 or all(entries == said[0] and found[0] for entries in said[1:]):
+    if len(found) == 1 or (found[0] and all(one and one.same_as(found[0]) for one in found[1:])):
         curve = found[0] if found else None
         why = f"no forming limit curve for the material {names}"
         if said and said[0].get("grade"):
@@ -98,7 +103,6 @@ def find_limits(fields: Fields, job: dict[str, Any], criteria: Criteria, account
     else:
         curve, why = None, f"no forming limit curve for each of the materials {names}"
         if all(found) and "material" in fields.grid["CellData"]:
-            numbers = [job["materials"].index(material) + 1 for material in materials]
             return Limits(None, "", thinning, given_by, {number: one for number, one in zip(numbers, found) if one})
     return Limits(curve, "" if curve else why, thinning, given_by)
 
@@ -118,21 +122,26 @@ def text_of(job: dict[str, Any], name: str) -> str:
     return "".join(f"  {entry['key']} = {entry['text']}\n" for entry in entries)
 
 
-def curve_of(fields: Fields, material: dict[str, Any], entries: dict[str, str]) -> Curve | None:
-    """Return the curve of a material, None if it says nothing of one."""
+def curve_of(fields: Fields, material: dict[str, Any], entries: dict[str, str], number: int | None = None
+             ) -> Curve | None:
+    """Return the curve of a material, None if it says nothing of one. number: of the material, if there are others."""
     if "forming_limit" in entries:
         points = np.array(entries["forming_limit"].split(), float).reshape(-1, 2)
         return Curve(points[:, 0], points[:, 1], material["name"])
     exponent = exponent_of(material)
     if entries.get("grade", "").lower() != LOW_CARBON or exponent is None:
         return None
-    return keeler_brazier(thickness_of(fields), exponent)
+    return keeler_brazier(thickness_of(fields, number), exponent)
 
 
-def thickness_of(fields: Fields) -> float:
-    """Return the median of the initial thickness, mm."""
+def thickness_of(fields: Fields, number: int | None = None) -> float:
+    """Return the initial thickness, mm, of a material by its number or of the sheet: the median or, of a tailored
+    sheet, that of the thinner part, whose limit is lower."""
     thickness = fields.values(0, "thickness")[0]
-    return float(np.median(thickness[thickness > 0]))
+    if number is not None and "material" in fields.grid["PointData"]:
+        thickness = thickness[fields.values(0, "material")[0] == number]
+    thin, middle = np.quantile(thickness[thickness > 0], [THIN, 0.5])
+    return float(thin if middle > VARIES * thin else middle)
 
 
 @dataclass

@@ -32,6 +32,10 @@ class Curve:
     def __init__(self, minor: Sequence[float] | np.ndarray, major: Sequence[float] | np.ndarray, label: str) -> None:
         self.minor, self.major, self.label = np.asarray(minor, float), np.asarray(major, float), label
 
+    def same_as(self, other: "Curve") -> bool:
+        """Whether another curve has the same points."""
+        return np.array_equal(self.minor, other.minor) and np.array_equal(self.major, other.major)
+
     def limit(self, minor: Any) -> Any:
         """Return the largest major strain."""
         value = np.interp(minor, self.minor, self.major)

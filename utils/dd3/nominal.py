@@ -24,6 +24,8 @@ from dd3.tools.surface import read_patches
 
 PARALLEL = 1e-9  # sine of the angle between a line and a triangle below which they do not meet
 CELLS = 10_000  # at most, whose normals are compared with those of another surface
+# Cosine of the angle between normals of sides that look alike; part of the area of a body that looks to the other side.
+ALONG, LEAST_SIDE = 0.5, 0.2
 INSIDE = 1e-9  # by which a line may pass beside a triangle, in its own coordinates
 
 
@@ -167,6 +169,21 @@ def line_distances(points: np.ndarray, directions: np.ndarray, surface: Any) -> 
             found[i] = along[nearest]
             normals[i] = face_normals[near[hits[nearest]]]
     return found, normals
+
+
+def side_of_body(surface: Any, other: Any) -> Any:
+    """Return of the surface of a body, such as the solid of a sheet part, the side to which another surface beside it
+    looks; other surfaces as they are. A body has cells in both directions along the normals of the other one."""
+    centres = np.asarray(surface.cell_centers().points, float)
+    normals, areas = np.asarray(surface.face_normals, float), surface.compute_cell_sizes()["Area"]
+    cosine = (normals * normal_distances(centres, other)[1]).sum(axis=1)
+    parts = [float(areas[chosen].sum() / areas.sum()) for chosen in (cosine > ALONG, cosine < -ALONG)]
+    if min(parts) < LEAST_SIDE:
+        return surface
+    # The normals of a body look outwards if its volume by them is positive.
+    outwards = float(((centres - centres.mean(axis=0)) * normals).sum(axis=1) @ areas)
+    import pyvista as pv
+    return pv.PolyData(surface.points, surface.faces.reshape(-1, 4)[np.sign(outwards) * cosine > ALONG].ravel())
 
 
 def turned_to(surface: Any, other: Any) -> Any:

@@ -23,7 +23,7 @@ with exit code 1 if one is exceeded. press.csv and press.png are written into RU
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -79,13 +79,13 @@ class Crank:
 
 
 def ram_course(history: pd.DataFrame, tools: Sequence[str], whole: int, cams: Sequence[str] = (),
-               friction: float = 0.0) -> pd.DataFrame:
+               friction: float = 0.0, opening: Collection[str] = ()) -> pd.DataFrame:
     """Return the course of the ram down to the bottom dead centre: height above it, mm, force, kN, energy, kJ, and the
     force of each tool on the ram, kN. whole: number of images of the model. cams: tools that the ram drives, with a
-    friction of their slides."""
+    friction of their slides. opening: phases in which the ram is withdrawn."""
     path = vector(history, tools[0], "u")
     path -= path[0]  # the displacement begins at the position of the input file
-    last = int(np.linalg.norm(path, axis=1).argmax())
+    last = int(np.where(history["phase"].isin(opening), 0.0, np.linalg.norm(path, axis=1)).argmax())
     if not last:
         raise Problem(f"the tool '{tools[0]}' does not move; expected one on the ram")
     direction = path[last] / np.linalg.norm(path[last])
@@ -153,6 +153,14 @@ def slide(name: str, push: np.ndarray, resisting: float, across: float, friction
         if sign * guide >= 0:
             return float(normal)
     raise Problem(f"--cam-friction: the slide of '{name}' locks with a friction of {friction:g}")
+
+
+def opening_phases(run: Path, tool: str) -> set[str]:
+    """Return the phases of a run in which a tool is withdrawn."""
+    if not (run / "run.json").is_file():
+        return set()
+    return {phase["name"] for phase in read_job(run)["phases"]
+            if any(one["name"] == tool and one["motion"] == "withdrawn" for one in phase["tools"])}
 
 
 def cams_of(run: Path, history: pd.DataFrame, tools: Sequence[str]) -> list[str]:
@@ -268,7 +276,8 @@ def main(words: Sequence[str] | None = None) -> None:
         sheet = Sheet(options.run)
         tell_symmetry(sheet, sheet.last, options.mirror, "forces and energy are those of a part",
                       "--mirror (or --whole)")
-    course = ram_course(history, tools, options.whole * 2**len(set(options.mirror)), cams, options.cam_friction)
+    course = ram_course(history, tools, options.whole * 2**len(set(options.mirror)), cams, options.cam_friction,
+                        opening_phases(options.run, tools[0]))
     over = compared(course, crank, options)
     folder = made_folder(options.run / "press")
     course.to_csv(folder / "press.csv", index=False, float_format="%.7g")

@@ -40,7 +40,7 @@ from dd3 import report as pages
 from dd3.command import new_parser
 from dd3.errors import LOG, Problem, Stopped
 from dd3.programs import add_program, command, find_program, launch, made_folder
-from dd3.run import read_job
+from dd3.run import files_of, read_job, state_of
 from dd3.tools.settings import ToolSettings
 
 STAMP = "operation.json"  # in the folder of an operation: what it has read
@@ -76,8 +76,10 @@ class Process:
     tools: list[ToolSettings] = field(default_factory=list)
 
 
-def refuse(path: Path, table: dict[str, Any], keys: Mapping[str, type[Any]], where: str) -> None:
-    """Refuse keys that are not known and values of another type."""
+def refuse(path: Path, table: Any, keys: Mapping[str, type[Any]], where: str) -> None:
+    """Refuse what is no table, keys that are not known and values of another type."""
+    if not isinstance(table, dict):
+        raise Problem(f"{path}: error: {table!r}{where}; expected a table of keys and values")
     for key, value in table.items():
         if key not in keys:
             raise Problem(f"{path}: error: unknown key '{key}'{where}; expected one of: {' '.join(keys)}")
@@ -125,29 +127,10 @@ def check_deck(program: Path, operation: Operation) -> tuple[dict[str, Any], str
         return {}, done.errors.strip()
 
 
-def files_of(job: dict[str, Any]) -> list[Path]:
-    """Return the files that a run reads: input files, those that their values name, the restart file of a sheet."""
-    found = [Path(name) for name in job["input"]["files"]]
-    for block in job["input"]["blocks"]:
-        for entry in block["entries"]:
-            if not entry["at"]:
-                continue
-            names = [entry["value"]] if isinstance(entry["value"], str) else []
-            names += re.findall(r'\bfile\s*=\s*"?([^"\s]+)', entry["text"])  # of a law
-            for path in (Path(entry["at"]["file"]).parent / name for name in names):
-                found += [file for file in (path, path / "restart.h5") if file.is_file()]
-    return sorted(set(found))
-
-
 def digests(job: dict[str, Any], settings: dict[str, object]) -> dict[str, str]:
     """Return the check sums of what a run depends on."""
     sums = {str(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in files_of(job)}
     return {**sums, "settings": json.dumps(settings, sort_keys=True), "version": job["program"]["version"]}
-
-
-def state_of(folder: Path) -> str:
-    """Return the state of a run, empty where there is none."""
-    return str(read_job(folder)["outcome"]["state"]) if (folder / "run.json").is_file() else ""
 
 
 def run_operation(program: Path, operation: Operation, threads: int | None = None) -> bool:

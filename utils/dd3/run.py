@@ -2,6 +2,7 @@
 """A run of dd3imp by its folder: tables, fields, and the description of the job."""
 
 import json
+import re
 from collections.abc import Sequence
 from functools import cached_property
 from importlib import import_module
@@ -28,6 +29,7 @@ FORMAT, VERSIONS = "dd3imp run", (1, 2)
 # Module of a picture, and whether it takes several runs.
 FIGURES = {"force": ("dd3.plot.force", True), "increments": ("dd3.plot.increments", True),
            "sheet": ("dd3.plot.sheet", False), "section": ("dd3.section", False)}
+FILE = re.compile(r'\bfile\s*=\s*(?:"([^"]+)"|([^"\s]+))')  # of a law, quoted or not
 TEXTS = {"phase", "point", "limiter", "outcome", "reason", "solver"}  # columns that are never numbers
 
 
@@ -206,6 +208,26 @@ def read_job(folder: Path) -> dict[str, Any]:
     if job.get("outcome", {}).get("state") == "running" and not is_held(folder / "job.log"):
         job["outcome"]["state"] = "killed"
     return job
+
+
+def files_of(job: dict[str, Any]) -> list[Path]:
+    """Return the files that a run reads: input files, those that their values name, the restart file of a sheet."""
+    base = Path(job["command"]["working_directory"])
+    found = [base / name for name in job["input"]["files"]]
+    for block in job["input"]["blocks"]:
+        for entry in block["entries"]:
+            if not entry["at"]:
+                continue
+            names = [entry["value"]] if isinstance(entry["value"], str) else []
+            names += [quoted or word for quoted, word in FILE.findall(entry["text"])]  # of a law
+            for path in (base / Path(entry["at"]["file"]).parent / name for name in names):
+                found += [file for file in (path, path / "restart.h5") if file.is_file()]
+    return sorted(set(found))
+
+
+def state_of(folder: Path) -> str:
+    """Return the state of a run, empty where there is none."""
+    return str(read_job(folder)["outcome"]["state"]) if (folder / "run.json").is_file() else ""
 
 
 def is_held(path: Path) -> bool:

@@ -137,15 +137,18 @@ contains
     integer, intent(in) :: number
     type(configuration_t), intent(in) :: state
 
+    real(wp), allocatable :: final(:, :)
     integer :: s
 
     self%start = self%now
+    final = model%phase(number)%loads%final
     do s = 1, size(model%load_set)
-      if (.not. model%phase(number)%loads%keeps(s)) then
-        self%final(:, s) = model%phase(number)%loads%final(:, s)
-      else if (model%load_set(s)%name /= gravity_name) then
-        self%final(:, s) = self%start(:, s)
-      end if
+      if (.not. model%phase(number)%loads%keeps(s)) cycle
+      final(:, s) = self%start(:, s)
+      if (model%load_set(s)%name == gravity_name) final(:, s) = self%final(:, s)
+    end do
+    self%final = final
+    do s = 1, size(model%load_set)
       associate (set => model%load_set(s), from => self%start(:, s), to => self%final(:, s))
         if (set%name /= gravity_name .or. norm2(from) > 0.0_wp .or. .not. norm2(to) > 0.0_wp) cycle
         if (.not. is_free(model, number, state%x)) cycle

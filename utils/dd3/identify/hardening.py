@@ -87,9 +87,8 @@ def measured_curve(path: str, young: float, turns_too: bool, plastic_strain: boo
     if plastic_strain:
         strain = strain + stress / young
     plastic = strain - stress / young
-    first = 0 if plastic_strain else int(np.argmax(plastic > 2e-4))
-    if not plastic_strain and not np.any(plastic > 2e-4):
-        first = len(strain)
+    beyond = np.abs(plastic) > 2e-4
+    first = 0 if plastic_strain else int(np.argmax(beyond)) if beyond.any() else len(strain)
     strain, stress = strain[first:], stress[first:]
     if len(strain) < 4:
         raise Problem(f"{path}: error: {len(strain)} rows beyond the elastic range of --young "
@@ -110,8 +109,9 @@ def hardening_start(law: str, backstresses: Sequence[str], curve: Curve, young: 
                     fixed: Mapping[str, float] | None = None) -> dict[Any, tuple[float, float, float]]:
     """Return the logarithms of the parameters to identify, with start and bounds."""
     forward = slice(0, curve.turns[0] + 1 if len(curve.turns) else None)
-    stress = curve.stress[forward]
-    start = law_start(law, curve.strain[forward] - stress / young, stress)
+    sign = np.sign(curve.stress[forward][-1])  # it may begin with compression
+    stress = sign * curve.stress[forward]
+    start = law_start(law, sign * curve.strain[forward] - stress / young, stress)
     most = stress.max()
     for number, backstress in enumerate(backstresses):
         first = {"k": most, "CX": 15 * 8**number, "Xsat": 0.15 * most}

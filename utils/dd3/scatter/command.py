@@ -67,7 +67,11 @@ class Scatter:
     mirror: list[str] = field(default_factory=list)
 
 
-KEYS = set(Scatter.__dataclass_fields__) - {"path"}
+TYPES: dict[str, type[Any]] = {
+    "deck": str, "coils": str, "runs": int, "seed": int, "results": list, "bands": list, "mirror": list,
+    "correlations": list, "set": dict, "inputs": dict, "limits": dict, "places": dict}
+WORDS = {str: "a text", int: "a whole number", list: "a list", dict: "a table of keys and values"}
+KEYS = set(TYPES)
 
 
 def read(path: Path) -> Scatter:
@@ -80,14 +84,24 @@ def read(path: Path) -> Scatter:
     if wrong or missing:
         raise Problem(f"{path}: " + (f"no key '{wrong[0]}'" if wrong else f"{missing[0]} is missing")
                       + f"; there are {', '.join(sorted(KEYS))}")
+    for key, value in found.items():
+        if not isinstance(value, TYPES[key]):
+            raise Problem(f"{path}: {key} is {value!r}; expected {WORDS[TYPES[key]]}")
     scatter = Scatter(path, **found)
     if not scatter.inputs and not scatter.coils:
         raise Problem(f"{path}: inputs is missing; expected [inputs.NAME], coils, or both")
     if "runs" in found and not (isinstance(scatter.runs, int) and scatter.runs >= 2):
         raise Problem(f"{path}: runs is a number of runs from 2 on, not {scatter.runs}")
-    for name in scatter.limits:
+    for name, limit in scatter.limits.items():
         if name not in scatter.results:
             raise Problem(f"{path}: the limit of '{name}' belongs to no result")
+        if not isinstance(limit, int | float):
+            raise Problem(f"{path}: the limit of '{name}' is {limit!r}; expected a number")
+    for name, row in scatter.inputs.items():
+        if not isinstance(row, dict):
+            raise Problem(f"{path}: inputs.{name} is {row!r}; expected a table: kind, mean, deviation, low, high")
+        if name in scatter.set:
+            raise Problem(f"{path}: '{name}' is an input and in set; expected one")
     for name, place in scatter.places.items():
         if not isinstance(place, list) or len(place) != 2 or not all(isinstance(x, (int, float)) for x in place):
             raise Problem(f"{path}: the place '{name}' is {place!r}; expected x and y on the blank, mm")
@@ -106,10 +120,16 @@ class Sample:
         both = sorted(set(scatter.inputs) & set(coils[0] if coils else {}))
         if both:
             raise Problem(f"{scatter.path}: '{both[0]}' is an input and a column of {scatter.coils}; expected one")
+        both = sorted(set(scatter.set) & set(coils[0] if coils else {}))
+        if both:
+            raise Problem(f"{scatter.path}: '{both[0]}' is in set and a column of {scatter.coils}; expected one")
         runs = scatter.runs or len(coils)
         if runs < 2:
             raise Problem(f"{scatter.path}: runs is missing; expected a number of runs from 2 on")
-        ranks = None if scatter.correlations is None else np.array(scatter.correlations, float)
+        try:
+            ranks = None if scatter.correlations is None else np.array(scatter.correlations, float)
+        except ValueError:
+            raise Problem(f"{scatter.path}: correlations: expected rows of numbers") from None
         self.values = (latin_hypercube(self.distributions, runs, ranks, scatter.seed)
                        if self.distributions else np.zeros((runs, 0)))
         self.coils = [coils[i] for i in coil_rows(len(coils), runs, scatter.seed, alone=not self.distributions)]

@@ -30,6 +30,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from datetime import datetime
 from pathlib import Path
 
 import numpy as np
@@ -41,13 +42,14 @@ from dd3.fields import Fields
 from dd3.plot.figures import new_figure, save
 from dd3.programs import add_program, command, find_program, launch, made_folder
 from dd3.progress import counter
-from dd3.run import read_frame, read_job
+from dd3.run import files_of, read_frame, read_job, state_of
 from dd3.study import response
 from dd3.tables import read_table, totals
 
 FOLDS: dict[str, Callable[[np.ndarray], float]] = {
     "max": np.max, "min": np.min, "mean": np.mean, "last": lambda values: values[-1]}
 MOST = 10000  # combinations
+RESOLUTION = 1.0  # of the time at which a run began, s
 REFUSED = "refused"  # state of a run that the program refuses
 STUDY = "combinations.json"  # program, input file and combinations for the workflow of snakemake
 
@@ -117,16 +119,20 @@ def combinations(parameters: Sequence[tuple[str, list[str]]], work: Path, settin
     return found
 
 
-def state_of(folder: Path) -> str:
-    """Return the state of a run, empty where there is none."""
-    return str(read_job(folder)["outcome"]["state"]) if (folder / "run.json").is_file() else ""
+def is_old(folder: Path, deck: Path) -> bool:
+    """Whether a file that the run in a folder reads has changed since it began or, in its first second, ended."""
+    job = read_job(folder)
+    since = min(datetime.fromisoformat(job["started"]).timestamp() + RESOLUTION,
+                (folder / "run.json").stat().st_mtime)
+    return any(path.stat().st_mtime > since for path in (deck, *files_of(job)))
 
 
 def make(case: Case, program: Path, deck: Path) -> None:
     """Run a case unless it has ended; an interrupted run is continued."""
-    ended = case.folder / "run.json"
-    old = ended.is_file() and ended.stat().st_mtime < deck.stat().st_mtime
-    case.state = "" if old else state_of(case.folder)
+    case.state = state_of(case.folder)
+    old = bool(case.state) and is_old(case.folder, deck)
+    if old:
+        case.state = ""
     if case.state in ("reached", "stopped"):
         return
     restart = case.folder / "restart.h5"

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from dd3.deck import before_comment
 from dd3.tables import read_text
 
 
@@ -64,7 +65,7 @@ class Parameters:
 def lines_of_text(text: str) -> Iterator[str]:
     """Yield the lines of a text; no comments, no empty lines."""
     for line in re.sub(r"&[ \t]*\n", " ", text).splitlines():
-        if line := re.sub(r"[#!].*", "", line).strip():
+        if line := before_comment(line).strip():
             yield line
 
 
