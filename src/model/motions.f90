@@ -93,6 +93,7 @@ contains
     real(wp) :: change(3), start
     integer :: i
 
+    start = 0.0_wp
     if (self%bends) start = angle_of(self, x0(:, self%node), x_start(:, self%node))
     do i = 1, size(self%node)
       associate (node => self%node(i))

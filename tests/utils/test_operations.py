@@ -147,7 +147,8 @@ def test_process(tmp_path, program):
 def test_process_refused(tmp_path, program):
     """Wrong files of processes and all errors of their input files are told before a run."""
     words = ("process", tmp_path / "part.toml", "--program", program)
-    for text, said in (("title = 3\n", "title is a int"), ("tilte = ''\n", "unknown key 'tilte'"),
+    for text, said in (("title = 3\n", "title is a int"), ("operation = [1]\n", "1 of operation 1; expected a table"),
+                       ("tilte = ''\n", "unknown key 'tilte'"),
                        ("", "no [[operation]]"), ("[[operation]]\nname = 'a'\n", "operation 1 has no deck"),
                        ("[[operation]]\ndeck = 'no.dat'\n", "'no.dat' of operation 1 does not exist"),
                        ("[[operation\n", "error: ")):
