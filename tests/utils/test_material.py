@@ -75,6 +75,7 @@ def test_errors():
     """Check what wrong values, names and states say."""
     for act, said in ((lambda: dd3.material(young=2e5), "error E121: 'poisson' is missing"),
                       (lambda: dd3.material("no_such"), "no material of the library"), (dd3.material, "takes a file"),
+                      (lambda: dd3.material("dc06", young=2e5), "takes 'dc06' or keys of *MATERIAL, not both"),
                       (lambda: dd3.material("dc06").yield_locus(shear=1.0), "beyond the yield stress in shear, 0.6251"),
                       (lambda: dd3.material("aa2090_t3_yld2004").flc(), "no forming limit curve for the material")):
         with pytest.raises(dd3.Problem) as problem:

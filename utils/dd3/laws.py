@@ -247,6 +247,8 @@ class Point:
 
 def material(source: str | Path | Mapping[str, Any] | None = None, *, name: str | None = None, **keys: Any) -> Material:
     """Return a material: the function of the package, dd3.material."""
+    if keys and not (source is None or isinstance(source, Mapping)):
+        raise Problem(f"dd3.material takes '{str(source).partition(chr(10))[0]}' or keys of *MATERIAL, not both")
     if isinstance(source, Mapping) or keys:
         lines = {**(source if isinstance(source, Mapping) else {}), **keys}
         text = [f"*MATERIAL {name or 'material'}"]

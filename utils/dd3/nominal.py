@@ -173,7 +173,10 @@ def line_distances(points: np.ndarray, directions: np.ndarray, surface: Any) -> 
 
 def side_of_body(surface: Any, other: Any) -> Any:
     """Return of the surface of a body, such as the solid of a sheet part, the side to which another surface beside it
-    looks; other surfaces as they are. A body has cells in both directions along the normals of the other one."""
+    looks; other surfaces as they are. A body has no open edges, and cells in both directions along the normals of the
+    other one."""
+    if surface.clean(tolerance=SAME).n_open_edges:
+        return surface
     centres = np.asarray(surface.cell_centers().points, float)
     normals, areas = np.asarray(surface.face_normals, float), surface.compute_cell_sizes()["Area"]
     cosine = (normals * normal_distances(centres, other)[1]).sum(axis=1)
