@@ -22,7 +22,6 @@ module dd3_app_run
   use dd3_input_echo, only : echo_case
   use dd3_linalg_solver, only : linear_solver_t
   use dd3_model_model, only : model_t
-  use dd3_model_phase, only : phase_t
   use dd3_output_restart_format, only : restart_name
   use dd3_output_run_summary, only : phase_summary_t, run_summary_t
   use dd3_point_run, only : run_points
@@ -99,7 +98,7 @@ contains
     if (allocated(start%source)) call read_file(start%source//"/"//run_file_name, earlier, ignored)
     call introduce(log, case, model)
     if (allocated(start%sheet_report)) call say_lines(log, start%sheet_report)
-    if (.not. allocated(start%source)) call clear_directory(log, start%directory, model%phase)
+    if (.not. allocated(start%source)) call clear_directory(log, start%directory, case)
     if (size(case%point) == 0) then
       call log_size(log, model, start, solver, job)
       call summary%start(size(model%phase), start%state)
@@ -218,11 +217,11 @@ contains
   end subroutine open_log
 
   !> Remove the results of an earlier run.
-  subroutine clear_directory(log, directory, phase)
+  subroutine clear_directory(log, directory, case)
     type(log_t), intent(inout) :: log
     character(len=*), intent(in) :: directory
-    !> Each may have left a state at its end.
-    type(phase_t), intent(in) :: phase(:)
+    !> Each of its phases may have left a state at its end.
+    type(case_t), intent(in) :: case
 
     character(len=:), allocatable :: names
     logical :: removed
@@ -235,8 +234,8 @@ contains
       call remove_file(directory//"/"//trim(result_file(i)), removed)
       if (removed) names = names//" "//trim(result_file(i))
     end do
-    do i = 1, size(phase)
-      associate (name => phase(i)%name//"/"//restart_name)
+    do i = 1, size(case%phase)
+      associate (name => case%phase(i)%name//"/"//restart_name)
         call remove_file(directory//"/"//name, removed)
         if (removed) names = names//" "//name
       end associate
