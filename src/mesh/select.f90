@@ -76,7 +76,7 @@ contains
       if (wanted%range(2, i) > maxval(label) .or. .not. any(inside)) then
         call errors%push_input(wanted%source%entry(wanted%source%find("nodes"))%value(i)%at, &
             "there is no node "//to_text(wanted%range(2, i)), "numbers from "// &
-            to_text(minval(label))//" to "//to_text(maxval(label)), code="E113")
+            to_text(minval(label, mask=label > 0))//" to "//to_text(maxval(label)), code="E113")
         cycle
       end if
       named = named .or. inside

@@ -156,13 +156,15 @@ contains
     force = [balance(1), balance(2:3)/phase%tilt(tool)%arm]
   end function as_forces
 
-  !> Return the moment of contact forces on a tool about its centre, N.mm.
-  function contact_moment(model, state, tool, point_force) result(moment)
+  !> Return the moment of contact forces on a tool about a point, its centre by default, N.mm.
+  function contact_moment(model, state, tool, point_force, about) result(moment)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     integer, intent(in) :: tool
     !> `(3, n_contact)`, N.
     real(wp), intent(in) :: point_force(:, :)
+    !> mm.
+    real(wp), intent(in), optional :: about(3)
     real(wp) :: moment(3)
 
     type(surface_point_t) :: point
@@ -170,6 +172,7 @@ contains
     integer :: c
 
     centre = state%tools%centre(:, tool) + state%tools%displacement(:, tool)
+    if (present(about)) centre = about
     moment = 0.0_wp
     do c = 1, model%n_contact
       if (state%contact%tool(c) /= tool .or. state%contact%status(c) == status_gap) cycle

@@ -61,7 +61,8 @@ contains
     type(state_t), intent(in) :: old
     !> On the refined sheet.
     type(model_t), intent(in) :: model
-    !> The refined sheet; its mesh is not used.
+    !> The refined sheet; its mesh is not used. The first of its earlier positions are those at the
+    !> start of the phase.
     type(sheet_t), intent(in) :: sheet
     type(refinement_t), intent(in) :: origin
     type(state_t), intent(out) :: new
@@ -77,7 +78,8 @@ contains
         [1, shape(old%sheet%plastic)]), carried)
     new%sheet%plastic(:, :) = carried(1, :, :) > 0.5_wp
     call carry_contact(old_model, old%configuration_t, model, origin, new)
-    new%start%x = origin%interpolate_nodal(old%start%x)
+    new%start%x = sheet%earlier(:, :, 1)
+    call follow_parents(model, new%start%x)
     call origin%carry_points(reshape(old%start%plastic_strain, &
         [1, shape(old%start%plastic_strain)]), carried)
     new%start%plastic_strain = carried(1, :, :)

@@ -99,16 +99,20 @@ contains
     type(state_t), intent(in) :: state
     integer, intent(in) :: tool
 
-    real(wp) :: axis(3)
+    type(placement_t) :: placement
     integer :: i
 
-    axis = 0.0_wp
+    torque = 0.0_wp
+    placement = state%placement(tool)
     do i = state%phase, 1, -1
       if (.not. model%phase(i)%turns(tool)) cycle
-      axis = matmul(state%tools%rotation(:, :, tool), model%phase(i)%turn(tool)%axis)
-      exit
+      associate (turn => model%phase(i)%turn(tool))
+        torque = dot_product(placement%vector_to_global(turn%axis), contact_moment(model, state, &
+            tool, state%contact%lambda, placement%vector_to_global(turn%centre) &
+            + placement%translation))
+      end associate
+      return
     end do
-    torque = dot_product(axis, contact_moment(model, state, tool, state%contact%lambda))
   end function torque
 
 end module dd3_model_turning

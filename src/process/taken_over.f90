@@ -9,6 +9,7 @@ module dd3_process_taken_over
   use dd3_model_model, only : model_t
   use dd3_model_reactions, only : reactions
   use dd3_model_state, only : state_t
+  use dd3_model_terms_list, only : external_forces
   use dd3_model_terms_released, only : hold_released
   use dd3_system_internal, only : update_material
   use dd3_system_system, only : system_t
@@ -36,7 +37,8 @@ contains
     call set_internal_forces(model, system, state, error)
     if (allocated(error)) return
     force = merge(0.0_wp, -state%sheet%internal_force, model%phase(1)%prescribed)
-    call hold_released(state%term, force, spread(0, 1, model%n_node), turns=.false.)
+    call hold_released(state%term, force, spread(-1, 1, model%n_node), turns=.false.)
+    state%external_force = external_forces(state%term, model, state%configuration_t)
     size_of = norm2(force, dim=1)
     node = maxloc(size_of, dim=1)
     note = "the sheet that is taken over has forces out of balance of up to "// &

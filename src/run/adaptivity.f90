@@ -227,7 +227,6 @@ contains
     type(grid_t) :: grid
     type(refinement_t) :: origin
     type(error_list_t) :: errors
-    real(wp), allocatable :: x(:, :)
     logical :: regular, divided
 
     sheet = sheet_of(model, state)
@@ -239,18 +238,17 @@ contains
       call make_whole(case, model, state)
       sheet = sheet_of(model, state)
     end if
+    allocate (sheet%earlier(3, model%n_node, merge(2, 1, allocated(model%x_start))))
+    sheet%earlier(:, :, 1) = state%start%x
+    if (allocated(model%x_start)) sheet%earlier(:, :, 2) = model%x_start
     call refine_sheet(sheet, grid, model%element, marked, refined, origin)
     refined%mesh%mesh_number = model%mesh_number + 1
     refined%mesh%n_first_node = model%n_first_node
     old_model = model
     old = state
     sheet = refined
-    if (allocated(model%x_start)) then
-      x = origin%interpolate_nodal(model%x_start)
-      call move_alloc(x, sheet%x)
-    else
-      sheet%x = sheet%mesh%x
-    end if
+    sheet%x = sheet%mesh%x
+    if (allocated(model%x_start)) sheet%x = refined%earlier(:, :, 2)
     call rebuild_model(model, case, sheet, errors)
     if (errors%count > 0) then
       call fatal_error(error, "the refined sheet: "//errors%item(1)%message, errors%item(1)%code)

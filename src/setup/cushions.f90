@@ -1,13 +1,13 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Cushions and spacers of the pressed tools in a phase.
 module dd3_setup_cushions
-  use dd3_base_error, only : error_list_t
+  use dd3_base_error, only : error_list_t, location_t
   use dd3_base_kinds, only : wp
   use dd3_input_case, only : case_t, phase_spec_t
   use dd3_model_cushion, only : cushion_t, spacer_t
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
-  use dd3_setup_gaps, only : offset_of_gap
+  use dd3_setup_gaps, only : check_place, offset_of_gap
   implicit none
   private
   public :: set_cushions, place_spacers
@@ -59,13 +59,20 @@ contains
     !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
 
+    type(location_t) :: at
     real(wp) :: offset
     logical :: found
-    integer :: i, k
+    integer :: i, k, before
 
     do i = 1, size(case%phase)
       do k = 1, size(model%phase(i)%spacer)
         associate (spacer => model%phase(i)%spacer(k))
+          at = case%phase(i)%source%opened
+          if (size(case%phase(i)%spacer) > 0) at = case%phase(i)%spacer(1)%at
+          before = errors%count
+          call check_place(model, i - 1, spacer%tool, "spacer", at, errors)
+          call check_place(model, i, spacer%other, "spacer", at, errors)
+          if (errors%count > before) cycle
           call offset_of_gap(model, i, spacer%tool, spacer%other, spacer%gap, offset, found)
           spacer%limit = model%phase(i)%direction(3, spacer%tool)*offset
           if (model%phase(i)%pressed(spacer%other) .and. size(case%phase(i)%spacer) == 0) call &

@@ -1,16 +1,16 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Gaps between tools at the end of a phase.
 module dd3_setup_gaps
-  use dd3_base_error, only : error_list_t
+  use dd3_base_error, only : error_list_t, location_t
   use dd3_base_kinds, only : wp
-  use dd3_input_case, only : case_t, tool_gap_t
+  use dd3_input_case, only : case_t
   use dd3_model_model, only : model_t
   use dd3_model_progress_table, only : table_value
   use dd3_settings_until, only : until_never
   use dd3_tools_separation, only : offset_at_gap
   implicit none
   private
-  public :: offset_of_gap, set_gaps
+  public :: check_place, offset_of_gap, set_gaps
 
 contains
 
@@ -32,8 +32,8 @@ contains
           gap = spec%value
           if (spec%in_thicknesses) gap = gap*model%thickness
           before = errors%count
-          call check_place(model, i, spec%tool, spec, errors)
-          call check_place(model, i, spec%other, spec, errors)
+          call check_place(model, i, spec%tool, "gap", spec%at, errors)
+          call check_place(model, i, spec%other, "gap", spec%at, errors)
           if (errors%count > before) cycle
           associate (tool => model%tool(spec%tool), other => model%tool(spec%other))
             call offset_of_gap(model, i, spec%tool, spec%other, gap, &
@@ -47,12 +47,14 @@ contains
     end do
   end subroutine set_gaps
 
-  !> Report a gap of a tool whose place along x and y is not known beforehand.
-  subroutine check_place(model, phase, tool, spec, errors)
+  !> Report a gap or a spacer of a tool whose place along x and y is not known beforehand.
+  subroutine check_place(model, phase, tool, what, at, errors)
     type(model_t), intent(in) :: model
     !> Number of the phase, and of the tool.
     integer, intent(in) :: phase, tool
-    type(tool_gap_t), intent(in) :: spec
+    !> What is placed, and where the input says so.
+    character(len=*), intent(in) :: what
+    type(location_t), intent(in) :: at
     !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
 
@@ -65,10 +67,10 @@ contains
             any(abs(earlier%move(:2, tool)) > 0.0_wp)
         if (earlier%pressed(tool)) strays = any(abs(earlier%direction(:2, tool)) > 0.0_wp)
         if (.not. strays) cycle
-        call errors%push_input(spec%at, "the gap is not known beforehand, as phase '"// &
+        call errors%push_input(at, "the "//what//" is not known beforehand, as phase '"// &
             earlier%name//"' moves tool '"//model%tool(tool)%name//"' aside by a way that is "// &
             "not known: it may end early, or presses the tool obliquely", &
-            "a move in place of the gap", code="E144")
+            "moves along x and y that end as given", code="E144")
         return
       end associate
     end do
@@ -106,6 +108,8 @@ contains
 
     aside = model%phase(phase)%move(:2, tool)
     do i = 1, phase - 1
+      ! A tool that the program withdraws is put back.
+      if (model%phase(i)%goes_back(tool)) cycle
       aside = aside + table_value(model%phase(i)%move_table, 1.0_wp) &
           *model%phase(i)%move(:2, tool)
     end do

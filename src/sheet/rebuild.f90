@@ -61,6 +61,7 @@ contains
     new%mesh%thickness = sheet%mesh%thickness
     new%mesh%placement = sheet%mesh%placement
     new%mesh%mesh_number = sheet%mesh%mesh_number
+    new%mesh%node_label = labels(sheet%mesh, cut, node, new%mesh%n_node)
     call move_nodes(sheet%mesh%x, cut, place, moved, node, new%mesh%n_node, new%mesh%x)
     call move_nodes(sheet%x, cut, place, moved, node, new%mesh%n_node, new%x)
     call make_elements(sheet, cut, node, new%mesh)
@@ -126,6 +127,27 @@ contains
       end do
     end associate
   end subroutine number_nodes
+
+  !> Return the labels of the nodes after the cut, by which sets name them: those of the file, else
+  !> the numbers before; 0 of a new node.
+  pure function labels(mesh, cut, node, n_node) result(label)
+    type(mesh_t), intent(in) :: mesh
+    type(cut_t), intent(in) :: cut
+    integer, intent(in) :: node(0:, :), n_node
+    integer :: label(n_node)
+
+    integer :: c, k, old
+
+    label = 0
+    do c = 1, cut%grid%n_column
+      do k = 0, ubound(node, 1)
+        if (node(k, c) == 0) cycle
+        old = cut%grid%node(k, c)
+        label(node(k, c)) = old
+        if (allocated(mesh%node_label)) label(node(k, c)) = mesh%node_label(old)
+      end do
+    end do
+  end function labels
 
   !> Set the positions of the nodes after the cut.
   pure subroutine move_nodes(x, cut, place, moved, node, n_node, new)

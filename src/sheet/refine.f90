@@ -37,6 +37,8 @@ contains
     type(division_t) :: division
     logical :: divided(grid%n_quad)
     integer, allocatable :: node(:, :)
+    real(wp), allocatable :: x(:, :)
+    integer :: k
 
     divided = marked_quads(grid, marked)
     call balance(grid, quad_levels(sheet%mesh, grid), divided)
@@ -57,6 +59,17 @@ contains
       refined%mesh%x = origin%interpolate_nodal(sheet%mesh%x)
       refined%x = origin%interpolate_nodal(sheet%x)
     end if
+    if (allocated(sheet%earlier)) then
+      allocate (refined%earlier(3, size(refined%x, 2), size(sheet%earlier, 3)))
+      do k = 1, size(sheet%earlier, 3)
+        if (element%n_enhanced > 0) then
+          call place_nodes(sheet%earlier(:, :, k), node, division, x)
+        else
+          x = origin%interpolate_nodal(sheet%earlier(:, :, k))
+        end if
+        refined%earlier(:, :, k) = x
+      end do
+    end if
     call round_border(sheet, grid, node, division, refined)
     if (.not. sheet%has_state) return
     call origin%carry_points(sheet%stress, refined%stress)
@@ -74,8 +87,8 @@ contains
     type(sheet_t), intent(inout) :: refined
 
     type(border_t) :: border
-    real(wp) :: initial(3, 2), present(3, 2), part(2)
-    integer :: column(4), i, k, q
+    real(wp) :: initial(3, 2), part(2)
+    integer :: column(4), i, j, k, q
 
     call new_border(border, grid)
     do q = 1, grid%n_quad
@@ -86,12 +99,17 @@ contains
           column = [border%beside(1, corner(1)), corner(:2), border%beside(2, corner(2))]
           do k = 0, ubound(node, 1)
             initial = edge_and_width(sheet%mesh%x(:, node(k, corner)))
-            present = edge_and_width(sheet%x(:, node(k, corner)))
             part = parts_along(bulge(sheet%mesh%x(:, node(k, merge(column, corner(1), &
                 column > 0))), column([1, 4]) > 0), initial)
             associate (new => node(k, division%middle(i, q)))
               refined%mesh%x(:, new) = refined%mesh%x(:, new) + matmul(initial, part)
-              refined%x(:, new) = refined%x(:, new) + matmul(present, part)
+              refined%x(:, new) = refined%x(:, new) &
+                  + matmul(edge_and_width(sheet%x(:, node(k, corner))), part)
+              if (.not. allocated(sheet%earlier)) cycle
+              do j = 1, size(sheet%earlier, 3)
+                refined%earlier(:, new, j) = refined%earlier(:, new, j) &
+                    + matmul(edge_and_width(sheet%earlier(:, node(k, corner), j)), part)
+              end do
             end associate
           end do
         end associate

@@ -26,6 +26,8 @@ module dd3_sheet_sheet
     real(wp), allocatable :: axes(:, :, :)
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), allocatable :: x(:, :)
+    !> Their positions at other times, `(3, n_node, :)`, mm; not allocated without.
+    real(wp), allocatable :: earlier(:, :, :)
     !> Whether the sheet has the state below; it is unstressed otherwise.
     logical :: has_state = .false.
     !> As in `state_t`: Cauchy stress and internal variables in the material frame,

@@ -95,7 +95,7 @@ def find_limits(fields: Fields, job: dict[str, Any], criteria: Criteria, account
     found = [curve_of(fields, material, entries, number if len(materials) > 1 else None)
              for number, material, entries in zip(numbers, materials, said)]
     names = " and ".join(material["name"] for material in materials)
-    if len(found) == 1 or (found[0] and all(one and one.same_as(found[0]) for one in found[1:])):
+    if len(found) < 2 or (found[0] and all(one and one.same_as(found[0]) for one in found[1:])):
         curve = found[0] if found else None
         why = f"no forming limit curve for the material {names}"
         if said and said[0].get("grade"):

@@ -43,23 +43,31 @@ module dd3_model_terms_bead_points
 
 contains
 
-  !> Find the points of all active beads.
-  subroutine find_bead_points(model, active, x, point)
+  !> Find the points of all active beads. A bead with a tool moves with it.
+  subroutine find_bead_points(model, active, x, point, displacement)
     type(model_t), intent(in) :: model
     !> `(n_bead)`.
     logical, intent(in) :: active(:)
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
     type(bead_point_t), allocatable, intent(out) :: point(:)
+    !> Displacements of the tools, `(3, n_tool)`, mm; by default they are at their positions of the
+    !> input.
+    real(wp), intent(in), optional :: displacement(:, :)
 
+    type(drawbead_t) :: bead
     integer :: b, q
 
     allocate (point(0))
     do b = 1, size(model%drawbead)
       if (.not. active(b)) cycle
+      bead = model%drawbead(b)
+      if (bead%tool > 0 .and. present(displacement)) then
+        call bead%move(displacement(:2, bead%tool) - model%tool(bead%tool)%position(:2))
+      end if
       do q = 1, size(model%bead_face, 2)
         associate (node => model%bead_face(:, q))
-          call add_face(model%drawbead(b), b, node, x(:, node), point)
+          call add_face(bead, b, node, x(:, node), point)
         end associate
       end do
     end do

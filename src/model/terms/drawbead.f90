@@ -36,6 +36,7 @@ module dd3_model_terms_drawbead
     !> Restraining force per length over the elastic slip, N/mm2.
     real(wp) :: stiffness = 0.0_wp
   contains
+    procedure :: move
     procedure :: length
     procedure :: means
     procedure :: restrain
@@ -78,6 +79,17 @@ contains
       end do
     end do
   end subroutine new_drawbead
+
+  !> Move the line in plan.
+  pure subroutine move(self, by)
+    class(drawbead_t), intent(inout) :: self
+    !> mm.
+    real(wp), intent(in) :: by(2)
+
+    self%line = self%line + spread(spread(by, 2, 2), 3, size(self%line, 3))
+    self%lower = self%lower + by
+    self%upper = self%upper + by
+  end subroutine move
 
   !> Return point j, 0 to n, of a segment in n equal parts; its ends exactly.
   pure function division(segment, j, n) result(point)

@@ -153,7 +153,8 @@ contains
         remaining = self
       end select
       call remaining%keep()
-      call find_bead_points(model, active .and. .not. new, state%x, remaining%point)
+      call find_bead_points(model, active .and. .not. new, state%x, remaining%point, &
+          state%tools%displacement)
       call remaining%evaluate(model, state, state)
     end associate
     force = force - (self%load - remaining%load)
@@ -193,7 +194,8 @@ contains
 
     if (size(self%load) == 0) return
     call self%keep()
-    call find_bead_points(model, model%phase(committed%phase)%beads%active, committed%x, self%point)
+    call find_bead_points(model, model%phase(committed%phase)%beads%active, committed%x, &
+        self%point, committed%tools%displacement)
     do p = 1, size(self%point)
       associate (point => self%point(p), i => self%point(p)%interval, &
           share => grip(model, committed, self%point(p)%bead))

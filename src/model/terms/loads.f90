@@ -240,8 +240,8 @@ contains
 
     change = factor*(self%final - self%start)
     do s = 1, size(model%load_set)
-      if (model%load_set(s)%name == gravity_name) &
-          change(:, s) = factor_of_weight*(self%final(:, s) - self%start(:, s))
+      if (model%load_set(s)%name /= gravity_name) cycle
+      change(:, s) = factor_of_weight*(self%final(:, s) - self%start(:, s))
     end do
   end function change
 

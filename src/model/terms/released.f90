@@ -24,7 +24,8 @@ module dd3_model_terms_released
     !> Whether they turn with the sheet. Those of a sheet that is taken over keep their directions,
     !> as the tools did from which most of them come.
     logical :: turns = .true.
-    !> Tool that released each node, while the force fades, `(n_node)`; 0 for none.
+    !> Tool that released each node, while the force fades, `(n_node)`; 0 for none, -1 for what held
+    !> a sheet that is taken over.
     integer, allocatable :: tool(:)
   contains
     procedure :: lose
@@ -67,7 +68,8 @@ contains
     type(term_box_t), intent(inout) :: terms(:)
     !> Forces of the nodes on all lost constraints, `(3, n_node)`, N.
     real(wp), intent(in) :: force(:, :)
-    !> Tool that has released each node at the start of this phase, `(n_node)`; 0 for none.
+    !> Tool that has released each node at the start of this phase, `(n_node)`; 0 for none, -1 for
+    !> another run.
     integer, intent(in) :: tool(:)
     logical, intent(in) :: turns
 
@@ -79,12 +81,13 @@ contains
         this%start = force
         this%left = force
         this%turns = turns
-        where (tool > 0) this%tool = tool
+        where (tool /= 0) this%tool = tool
       end select
     end do
   end subroutine hold_released
 
-  !> Return the tool that released each node while its force fades, `(n_node)`; 0 for none.
+  !> Return the tool that released each node while its force fades, `(n_node)`; 0 for none, -1 for
+  !> another run.
   pure function released_tool(terms) result(tool)
     type(term_box_t), intent(in) :: terms(:)
     integer, allocatable :: tool(:)
