@@ -219,7 +219,8 @@ class Tailored:
 
     def __init__(self, thickness):
         self.grid = {"PointData": {"material": 0}, "CellData": {"material": 0}}
-        self.table = {"thickness": np.array(thickness), "material": np.array([1] * 20 + [0] * 2 + [2] * 20)}
+        thinning = np.linspace(0, 0.2, 42)
+        self.table = {"thickness": np.array(thickness) * (1 - thinning), "thinning": thinning, "material": np.array([1] * 20 + [0] * 2 + [2] * 20)}
 
     def values(self, step, name, at_cells=False):
         """Return a field."""

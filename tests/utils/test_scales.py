@@ -93,6 +93,16 @@ def test_whole_sheet(tmp_path):
     assert two.n_points == 2 * 9 and two.is_all_triangles is False
     assert two.n_open_edges == 0
     assert length_of(skins.sharp_edges(two)) == pytest.approx(2 * 8 + 4)  # none on the planes
+    # A component along x has the other sign in the images across x, a shear stress of x and y across each of both.
+    mesh = run.shape(0)
+    mesh.point_data["shown"] = mesh.points[:, 0] + 1.0
+    for field, odd in (("displacement:x", ["x"]), ("stress:12", ["x", "y"]), ("stress:11", []), ("thickness", [])):
+        assert odd_axes(field) == odd, field
+        skin = skins.sheet_skin(mesh, ("x", "y"), odd)
+        x, y, shown = *skin.points[:, :2].T, skin.point_data["shown"]
+        inside = (np.abs(x) > 1e-6) & (np.abs(y) > 1e-6)
+        sign = (np.sign(x) if "x" in odd else 1) * (np.sign(y) if "y" in odd else 1) * np.ones(len(x))
+        assert np.allclose(shown[inside], (sign * (np.abs(x) + 1.0))[inside])
     # A tool that goes beyond the plane, here from -1 to 1, is cut there.
     patches = [(np.array([[[-1, -1, 0], [1, -1, 0]], [[-1, 1, 0], [1, 1, 0]]], float), np.ones((2, 2)))]
     place = skins.Placement(np.eye(3), np.zeros(3))

@@ -227,6 +227,12 @@ class Fields:
         raise Problem(f"{self.path}: no component '{chosen}' of '{name}'; there are: {', '.join(names)}, magnitude")
 
 
+def odd_axes(field: str) -> list[str]:
+    """Return the axes in whose mirror images a component such as displacement:x or stress:12 changes its sign."""
+    chosen = field.partition(":")[2]
+    return [axis for axis, digit in zip("xyz", "123") if (chosen.count(axis) + chosen.count(digit)) % 2]
+
+
 def number_in(text: str, said: str) -> float:
     """Return the number in a text."""
     try:

@@ -113,7 +113,7 @@ def materials(job: dict[str, Any], fixture: Fixture) -> list[str]:
         lines.append(f"*MATERIAL {block['name']}")
         given = [entry for entry in block["entries"] if not entry["default"]]
         for entry in given:
-            folder = Path(entry["at"]["file"]).resolve().parent
+            folder = Path(job["command"]["working_directory"], entry["at"]["file"]).parent
             text = with_absolute_files(entry["text"], folder)
             lines.append(f"  {entry['key']} = {text}")
         if fixture.gravity is not None and "density" not in [entry["key"] for entry in given]:

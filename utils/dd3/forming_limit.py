@@ -135,9 +135,9 @@ def curve_of(fields: Fields, material: dict[str, Any], entries: dict[str, str], 
 
 
 def thickness_of(fields: Fields, number: int | None = None) -> float:
-    """Return the initial thickness, mm, of a material by its number or of the sheet: the median or, of a tailored
+    """Return the thickness of the blank, mm, of a material by its number or of the sheet: the median or, of a tailored
     sheet, that of the thinner part, whose limit is lower."""
-    thickness = fields.values(0, "thickness")[0]
+    thickness = fields.values(0, "thickness")[0] / (1 - fields.values(0, "thinning")[0])  # of a sheet taken over too
     if number is not None and "material" in fields.grid["PointData"]:
         thickness = thickness[fields.values(0, "material")[0] == number]
     thin, middle = np.quantile(thickness[thickness > 0], [THIN, 0.5])

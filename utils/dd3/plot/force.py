@@ -79,11 +79,13 @@ def controlling_tool(history: pd.DataFrame, phases: Sequence[str]) -> str:
 
 
 def progress_of(history: pd.DataFrame, rows: np.ndarray) -> np.ndarray:
-    """Return the progress from the first row on, each phase from 0 to 1."""
-    progress = history["progress"].to_numpy(float)[rows]
-    begins = np.concatenate(([0], np.cumsum(np.diff(progress) < 0)))
-    found: np.ndarray = progress + begins
-    return found - found[0] if found[0] < 1 else np.concatenate(([0.0], found[1:] - 1))
+    """Return the progress from the first row on, which may be the last one before the phases: each counts from 0, to
+    1 or where it ends early."""
+    progress, phases = history["progress"].to_numpy(float)[rows], history["phase"].to_numpy(str)[rows]
+    new = np.concatenate(([False], phases[1:] != phases[:-1]))
+    ended = np.cumsum(np.where(new, np.concatenate(([0.0], progress[:-1])), 0.0))
+    found: np.ndarray = progress + ended
+    return found - found[0]
 
 
 def is_led(progress: np.ndarray, place: np.ndarray) -> bool:

@@ -31,7 +31,7 @@ from matplotlib.figure import Figure
 from dd3 import places, rendering
 from dd3.command import new_parser
 from dd3.errors import LOG, Problem
-from dd3.fields import AT, Fields, text_of
+from dd3.fields import AT, Fields, odd_axes, text_of
 from dd3.plot import levels, scale
 from dd3.plot.beads import draw_beads
 from dd3.plot.scale import Scale
@@ -136,7 +136,7 @@ def add_surface(plotter: Any, skin: pv.PolyData, **options: Any) -> None:
 
 def add_sheet(plotter: Any, mesh: pv.UnstructuredGrid, style: Style, limits: Scale) -> None:
     """Add a sheet with the field `shown`, completed at the planes of symmetry."""
-    add_surface(plotter, sheet_skin(mesh, style.mirror), scalars="shown", clim=limits[:2],
+    add_surface(plotter, sheet_skin(mesh, style.mirror, odd_axes(style.field)), scalars="shown", clim=limits[:2],
                 cmap=scale.colours_of(limits, style.colours), show_edges=style.mesh, edge_color=rendering.MESH,
                 line_width=1)
 
@@ -308,6 +308,8 @@ def limits_of(run: Run, steps: Sequence[int], style: Style) -> Scale:
         return scale.own_scale(style.field, style.limits)
     drawn = [run.mesh(step, style.field, style.cells)[0]["shown"] for step in steps]
     low, high = (float(end) for end in (min(map(np.min, drawn)), max(map(np.max, drawn))))
+    if set(odd_axes(style.field)) & set(style.mirror):
+        low, high = min(low, -high), max(high, -low)
     if style.field == levels.LEVEL:
         low, high = levels.limits_of(int(high))
         return Scale(low, high, 1.0)

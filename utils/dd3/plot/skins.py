@@ -46,11 +46,16 @@ def tool_surface(patches: Patches, placement: Placement, count: int = POINTS) ->
     return pv.PolyData(np.concatenate(points), np.insert(np.concatenate(faces), 0, 4, axis=1))
 
 
-def reflected(mesh: Any, axes: Sequence[str]) -> list[Any]:
-    """Return the mesh and its mirror images in the planes normal to the axes."""
+def reflected(mesh: Any, axes: Sequence[str], odd: Sequence[str] = ()) -> list[Any]:
+    """Return the mesh and its mirror images in the planes normal to the axes. odd: axes in whose images the field
+    `shown` changes its sign."""
     parts = [mesh]
     for axis in axes:
-        parts += [part.reflect(normal_of(axis), point=(0.0, 0.0, 0.0)) for part in parts]
+        images = [part.reflect(normal_of(axis), point=(0.0, 0.0, 0.0)) for part in parts]
+        for data in (data for image in images for data in (image.point_data, image.cell_data)):
+            if axis in odd and "shown" in data:
+                data["shown"] = -data["shown"]
+        parts += images
     return parts
 
 
@@ -59,20 +64,21 @@ def normal_of(axis: str) -> tuple[float, ...]:
     return tuple(float(axis == other) for other in AXES)
 
 
-def completed(skin: pv.PolyData, axes: Sequence[str]) -> pv.PolyData:
-    """Return a surface and its mirror images as one, without seams."""
-    return pv.merge(reflected(skin, axes), merge_points=False).clean(tolerance=ON_PLANE, absolute=False)
+def completed(skin: pv.PolyData, axes: Sequence[str], odd: Sequence[str] = ()) -> pv.PolyData:
+    """Return a surface and its mirror images as one, without seams; odd as in `reflected`."""
+    return pv.merge(reflected(skin, axes, odd), merge_points=False).clean(tolerance=ON_PLANE, absolute=False)
 
 
-def sheet_skin(mesh: pv.UnstructuredGrid, axes: Sequence[str]) -> pv.PolyData:
-    """Return the surface of a sheet, completed at its planes of symmetry; the faces on these are left out."""
+def sheet_skin(mesh: pv.UnstructuredGrid, axes: Sequence[str], odd: Sequence[str] = ()) -> pv.PolyData:
+    """Return the surface of a sheet, completed at its planes of symmetry; the faces on these are left out; odd as in
+    `reflected`."""
     skin = closed_skin(mesh).extract_surface(algorithm="dataset_surface", nonlinear_subdivision=2)
     near = ON_PLANE * diagonal((skin.points.min(axis=0), skin.points.max(axis=0)))
     for axis in axes:
         off = np.abs(skin.points[:, AXES.index(axis)]) > near
         cut = [cell for cell, nodes in enumerate(skin.irregular_faces) if not off[nodes].any()]
         skin = skin.remove_cells(cut) if cut else skin
-    return completed(skin, axes)
+    return completed(skin, axes, odd)
 
 
 def tool_skin(patches: Patches, placement: Placement, axes: Sequence[str], inside: np.ndarray) -> pv.PolyData:

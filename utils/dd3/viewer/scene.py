@@ -10,10 +10,11 @@ from typing import Any, NamedTuple
 
 import matplotlib
 import numpy as np
+from scipy.spatial import cKDTree
 
 from dd3 import forming_limit, springback, verdict
 from dd3 import forming_limit_curve as curves
-from dd3.fields import COMPONENTS, text_of
+from dd3.fields import COMPONENTS, odd_axes, text_of
 from dd3.plot import scale, skins
 from dd3.plot import sheet as pictures
 from dd3.plot.beads import draped
@@ -30,6 +31,7 @@ STATUS = ("no contact", "stick", "slip")
 ZONES = ("no warning", "thickens, may wrinkle", "thinning of 80 to 100 % of the limit", "thinning above the limit")
 ZONE_COLOURS = ("#e3e7eb", "#0072b2", "#f0e442", "#d55e00")
 NEAR = 0.8  # of the limit of thinning
+NEAREST = 1.2  # distance of corners over the least one up to which they count for the normal between them
 PLACES = (("punches", "off_tools", "farthest from the tools at the end of the path of {}"),
           ("punches", "off_walls", "farthest from the tools in walls"),
           ("punches", "path_left", "path left of {} is shortest"), ("holders", "wave", "highest wave under {}"),
@@ -127,8 +129,10 @@ class Scene:
             for part in parts:
                 field = f"{name}:{part}" if part else name
                 values = [self.values(picture, field, at_cells) for picture in self.pictures]
-                kind = self.kind(name, data)
-                yield {"name": field, "label": self.sheet.component(0, field, at_cells)[1],
+                kind, label = self.kind(name, data), self.sheet.component(0, field, at_cells)[1]
+                if set(odd_axes(field)) & set(self.mirror):  # its sign is another one in the image
+                    label += ", of the part computed"
+                yield {"name": field, "label": label,
                        "help": text_of(data.attrs.get("description", "")), "elements": at_cells, **kind,
                        **self.written(values, np.issubdtype(data.dtype, np.integer), kind["percent"], name)}
 
@@ -281,11 +285,18 @@ def places_of(job: dict[str, Any], shown: Sequence[Picture]) -> Iterator[dict[st
 
 
 def upward_normals(sheet: Sheet, step: int) -> np.ndarray:
-    """Return the unit normals of the sheet at the nodes of a step, from its lower to its upper face."""
+    """Return the unit normals of the sheet at the nodes of a step, from its lower to its upper face. Nodes that are no
+    corners of its faces have the mean of the corners that are nearest."""
     points = sheet.points(step)
     normals = np.zeros_like(points)
     for upper, sign in ((True, 1.0), (False, -1.0)):
         faces = sheet.faces(upper, step)
         across = np.cross(points[faces[:, 2]] - points[faces[:, 0]], points[faces[:, 3]] - points[faces[:, 1]])
         np.add.at(normals, faces, sign * across[:, None, :])
+    known = normals.any(axis=1)
+    if not known.all():
+        distance, near = cKDTree(points[known]).query(points[~known], 4)
+        close = distance <= NEAREST * distance[:, :1]
+        normals[~known] = (normals[known] / np.linalg.norm(normals[known], axis=1)[:, None])[near].sum(
+            axis=1, where=close[..., None])
     return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
