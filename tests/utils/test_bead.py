@@ -146,6 +146,13 @@ def test_refused():
         flow(Material(STEEL), Bead(1.0, 2.0, 2.0, 1.1, 4.5, 0.1, 0.4))
 
 
+@pytest.mark.parametrize("word", ["--clamping", "--direction"])
+def test_strip_without(word):
+    """Check that a strip is refused that would not be what the bead was computed with."""
+    assert "--strip goes without" in call("bead", "dc06", "--thickness", 1, "--radius", 5, "--height", 3, "--strip", "s", word,
+                                          45, expect=2)
+
+
 def test_command(tmp_path, program):
     """Check the table and the lines of *DRAWBEAD, and that the program takes the strip."""
     sheet = tmp_path / "sheet.dat"

@@ -7,7 +7,10 @@ import pytest
 import pyvista
 from helpers import call, write_run
 
+from dd3.deviation import face_of
+from dd3.fixture_deck import partner
 from dd3.nominal import line_distances
+from dd3.sheet import Sheet
 
 HISTORY = "increment,phase,travel,progress,punch_ux,punch_uy,punch_uz\n0,draw,0,1,0,0,0\n1,free,2,1,0,0,0\n"
 TOOL = {"name": "punch", "active": True}
@@ -144,6 +147,21 @@ def test_planes_of_symmetry_are_told(tmp_path):
     assert "the alignment may turn the part" in said and "expected for mirror: x" in said, said
     (tmp_path / "f.toml").write_text('face = "lower"\nmirror = ["x"]\n')
     assert "warning" not in call("deviation", tmp_path / "run", "--fixture", tmp_path / "f.toml")
+
+
+def test_layers(tmp_path):
+    """Check thickness and the node of the other face of a sheet of two layers of elements."""
+    x, y, z = (a.ravel() for a in np.meshgrid([0.0, 2.0, 4.0], [0.0, 2.0], [0.0, 0.5, 1.2], indexing="ij"))
+    number, points = np.arange(18).reshape(3, 2, 3), np.column_stack([x, y, z])
+    cells = [[number[i + a, b, j + k] for k in (0, 1) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))]
+             for i in range(2) for j in range(2)]
+    write_run(tmp_path / "run", points, points, cells, HISTORY, "phase\n", {"displacement": (0 * points, 0 * points)},
+              phases=PHASES)
+    for upper, here, there in ((True, 1.2, 0.0), (False, 0.0, 1.2)):
+        face = face_of(Sheet(tmp_path / "run"), 0, upper)
+        assert face.thickness == pytest.approx(1.2) and (face.points[:, 2] == here).all()
+        for node in face.nodes:
+            assert np.array_equal(points[partner(face, int(node))], [*points[node, :2], there])
 
 
 def test_lines_on_the_border():

@@ -91,6 +91,9 @@ def main(words: Sequence[str] | None = None) -> None:
     options = parser.parse_args(words)
     if min(options.layers, options.steps) < 4:
         parser.error("--layers and --steps take at least 4")
+    if options.strip and (options.clamping or options.direction):
+        parser.error("--strip goes without --clamping and --direction: its strip lies along the rolling direction, "
+                     "between free plates")
     path = found(options.material) or options.material
     blanks, tools = ([block for block in read_blocks(path) if block.keyword == word] for word in ("blank", "tool"))
     t, friction, name = options.thickness, options.friction, options.name

@@ -39,8 +39,9 @@ from dd3.nominal import (
 )
 from dd3.programs import made_folder
 from dd3.run import read_frame, read_job
-from dd3.sheet import AXES, LOWER, UPPER, Sheet, length, plane
+from dd3.sheet import AXES, Sheet, length, plane
 from dd3.springback import best_fit, steps_with_tools, tell_symmetry
+from dd3.surface_strain import columns
 
 BORDER = 0.25  # largest distance beside the border of the nominal shape at which a node is compared, over the thickness
 FAR = 5.0  # largest distance of a place of the file from the nominal shape, mm
@@ -83,8 +84,9 @@ class Deviations:
 
 def face_of(sheet: Sheet, step: int, upper: bool) -> Face:
     """Return a face of a sheet."""
-    nodes, corners, points = np.unique(sheet.faces(upper, step)), sheet.corners(step), sheet.points(step)
-    thickness = np.linalg.norm(points[corners[:, UPPER]] - points[corners[:, LOWER]], axis=2).mean()
+    nodes, points = np.unique(sheet.faces(upper, step)), sheet.points(step)
+    bottom, top = columns(sheet.corners(step), len(points))
+    thickness = np.linalg.norm(points[top] - points[bottom], axis=2).mean()
     return Face(sheet, step, nodes, sheet.initial(step)[nodes], points[nodes], float(thickness),
                 sheet_surface(sheet, step, upper=upper))
 

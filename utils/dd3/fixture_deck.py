@@ -17,7 +17,8 @@ from dd3.errors import Problem
 from dd3.fixture import LOCATORS, Fixture, Support
 from dd3.nominal import line_distances, of_material
 from dd3.run import FILE, read_job
-from dd3.sheet import AXES, LOWER, UPPER
+from dd3.sheet import AXES
+from dd3.surface_strain import columns
 
 ALONG = 1 - 1e-6  # cosine between a direction and an axis
 TRIAL = 0.25  # of a phase
@@ -155,6 +156,6 @@ def acting_of(found: Comparison, number: int) -> Acting:
 
 def partner(part: Face, node: int) -> int:
     """Return the node of the other face of the sheet that faces a node."""
-    corners = part.sheet.corners(part.step)
-    pairs = np.stack([corners[:, LOWER], corners[:, UPPER]], axis=2).reshape(-1, 2)
+    ends = columns(part.sheet.corners(part.step), len(part.sheet.points(part.step)))
+    pairs = np.stack(ends, axis=2).reshape(-1, 2)
     return int(next(other for pair in (pairs, pairs[:, ::-1]) for other in pair[pair[:, 0] == node][:1, 1]))
