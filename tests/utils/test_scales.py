@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from test_pictures import made_run
 
+from dd3.fields import odd_axes
 from dd3.plot import scale, skins
 from dd3.plot import sheet as pictures
 
