@@ -51,7 +51,8 @@ module dd3_mesh_mesh
     !> Bound nodes, each in the middle of an edge of a larger element, and the nodes at the ends of
     !> that edge, `(3, n)`; not allocated if there are none.
     integer, allocatable :: bound(:, :)
-    !> Labels of the nodes in the mesh file; not allocated for a structured blank.
+    !> Labels of the nodes in the mesh file, 0 of nodes that a cut or a refinement has made; not
+    !> allocated for a structured blank.
     integer, allocatable :: node_label(:)
     !> Node sets of the blank, then those of the input file in its order.
     type(mesh_set_t), allocatable :: set(:)

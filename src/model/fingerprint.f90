@@ -20,7 +20,7 @@ module dd3_model_fingerprint
   end type fingerprint_t
 
   !> Name of the first part. Those that refer to its nodes are not compared if it differs.
-  character(len=*), parameter :: mesh_part = "the mesh or its place"
+  character(len=*), parameter :: mesh_part = "the mesh or the place of the sheet"
 
 contains
 

@@ -31,6 +31,8 @@ module dd3_model_mesh_data
     real(wp), allocatable :: x_start(:, :)
     !> Nodes of the elements, `(element%n_node, n_element)`.
     integer, allocatable :: connectivity(:, :)
+    !> Labels of the nodes in the mesh file, `(n_node)`; see `mesh_t`.
+    integer, allocatable :: node_label(:)
     !> Number of refinements that have made the mesh.
     integer :: mesh_number = 0
     !> Number of nodes before the first of them; those that divisions have made come after.

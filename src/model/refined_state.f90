@@ -37,6 +37,7 @@ contains
       mesh%material = model%material_of
       if (.not. allocated(model%node_thickness)) mesh%thickness = model%thickness
       mesh%placement = model%placement
+      if (allocated(model%node_label)) mesh%node_label = model%node_label
       if (allocated(model%level)) mesh%level = model%level
       if (model%n_bound > 0) mesh%bound = model%bound
       allocate (mesh%set(size(model%set)), mesh%element_set(0))

@@ -171,7 +171,7 @@ contains
     integer :: sizes(n_sizes)
     real(wp) :: thickness(1), placement(3, 4)
     real(wp), allocatable :: x0(:, :), axes(:, :, :)
-    integer, allocatable :: connectivity(:, :), material_of(:), digest(:)
+    integer, allocatable :: connectivity(:, :), material_of(:), digest(:), label(:)
     character(len=:), allocatable :: materials
 
     sizes = [model%n_node, model%n_element, model%element%n_node, model%element%n_point, &
@@ -187,6 +187,10 @@ contains
     call writer%reals("thickness", 1, thickness)
     placement = model%placement
     call writer%reals("placement", size(placement), placement)
+    if (allocated(model%node_label)) then
+      label = model%node_label
+      call writer%integers("node_label", size(label), label)
+    end if
     call writer%integers("connectivity", size(connectivity), connectivity)
     call visit_refinement(model, writer)
     call writer%integers("material_of", size(material_of), material_of)

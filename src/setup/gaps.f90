@@ -58,18 +58,20 @@ contains
     !> Errors found are added.
     type(error_list_t), intent(inout) :: errors
 
+    character(len=:), allocatable :: cause
     integer :: i
-    logical :: strays
 
     do i = 1, phase
       associate (earlier => model%phase(i))
-        strays = i < phase .and. earlier%until%kind /= until_never .and. &
-            any(abs(earlier%move(:2, tool)) > 0.0_wp)
-        if (earlier%pressed(tool)) strays = any(abs(earlier%direction(:2, tool)) > 0.0_wp)
-        if (.not. strays) cycle
+        cause = ""
+        if (earlier%pressed(tool)) then
+          if (any(abs(earlier%direction(:2, tool)) > 0.0_wp)) cause = "presses"
+        else if (i < phase .and. earlier%until%kind /= until_never) then
+          if (any(abs(earlier%move(:2, tool)) > 0.0_wp)) cause = "may end early (until) and moves"
+        end if
+        if (cause == "") cycle
         call errors%push_input(at, "the "//what//" is not known beforehand, as phase '"// &
-            earlier%name//"' moves tool '"//model%tool(tool)%name//"' aside by a way that is "// &
-            "not known: it may end early, or presses the tool obliquely", &
+            earlier%name//"' "//cause//" tool '"//model%tool(tool)%name//"' along x or y", &
             "moves along x and y that end as given", code="E144")
         return
       end associate

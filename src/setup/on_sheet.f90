@@ -118,6 +118,7 @@ contains
     model%x0 = mesh%x
     model%connectivity = mesh%connectivity
     model%placement = mesh%placement
+    if (allocated(mesh%node_label)) model%node_label = mesh%node_label
     model%mesh_number = mesh%mesh_number
     model%n_first_node = merge(mesh%n_first_node, mesh%n_node, mesh%mesh_number > 0)
     allocate (model%set(size(mesh%set)))

@@ -135,6 +135,11 @@ contains
       ! The files of other programs and of earlier versions have no placement and axes.
       call dataset_size(file, "mesh/placement", n)
       if (n >= 0) call read_block(file, "mesh/placement", 12, mesh%placement, ok)
+      call dataset_size(file, "mesh/node_label", n)
+      if (n == mesh%n_node) then
+        allocate (mesh%node_label(n))
+        call read_integers(file, "mesh/node_label", mesh%node_label, ok)
+      end if
       call read_integer_block(file, "mesh/connectivity", size(mesh%connectivity), &
           mesh%connectivity, ok)
       call read_refinement(file, mesh, ok)

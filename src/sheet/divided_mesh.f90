@@ -34,6 +34,9 @@ contains
     mesh%thickness = old%thickness
     mesh%placement = old%placement
     mesh%n_node = old%n_node + (grid%n_layer + 1)*(division%n_column - grid%n_column)
+    if (allocated(old%node_label)) then
+      mesh%node_label = [old%node_label, spread(0, 1, mesh%n_node - old%n_node)]
+    end if
     call number_nodes(old%n_node, grid, division, node)
     call set_parents(mesh%n_node, node, division, origin)
     call list_elements(grid, quad, division%divided, origin)

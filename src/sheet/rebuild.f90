@@ -61,7 +61,9 @@ contains
     new%mesh%thickness = sheet%mesh%thickness
     new%mesh%placement = sheet%mesh%placement
     new%mesh%mesh_number = sheet%mesh%mesh_number
-    new%mesh%node_label = labels(sheet%mesh, cut, node, new%mesh%n_node)
+    if (allocated(sheet%mesh%node_label)) then
+      new%mesh%node_label = labels(sheet%mesh%node_label, cut, node, new%mesh%n_node)
+    end if
     call move_nodes(sheet%mesh%x, cut, place, moved, node, new%mesh%n_node, new%mesh%x)
     call move_nodes(sheet%x, cut, place, moved, node, new%mesh%n_node, new%x)
     call make_elements(sheet, cut, node, new%mesh)
@@ -128,23 +130,19 @@ contains
     end associate
   end subroutine number_nodes
 
-  !> Return the labels of the nodes after the cut, by which sets name them: those of the file, else
-  !> the numbers before; 0 of a new node.
-  pure function labels(mesh, cut, node, n_node) result(label)
-    type(mesh_t), intent(in) :: mesh
+  !> Return the labels of the nodes after the cut, 0 of new ones.
+  pure function labels(before, cut, node, n_node) result(label)
+    integer, intent(in) :: before(:)
     type(cut_t), intent(in) :: cut
     integer, intent(in) :: node(0:, :), n_node
     integer :: label(n_node)
 
-    integer :: c, k, old
+    integer :: c, k
 
     label = 0
     do c = 1, cut%grid%n_column
       do k = 0, ubound(node, 1)
-        if (node(k, c) == 0) cycle
-        old = cut%grid%node(k, c)
-        label(node(k, c)) = old
-        if (allocated(mesh%node_label)) label(node(k, c)) = mesh%node_label(old)
+        if (node(k, c) > 0) label(node(k, c)) = before(cut%grid%node(k, c))
       end do
     end do
   end function labels

@@ -22,8 +22,8 @@ KILLS = 2
 MOST_TRIALS = 20
 # Changes of the deck, and what the message names as different.
 DIFFERENT = {
-    "mesh": ((("divisions = 20 1 1", "divisions = 21 1 1"),), "the mesh or its place"),
-    "size": ((("175 9 0.78", "176 9 0.78"),), "the mesh or its place"),
+    "mesh": ((("divisions = 20 1 1", "divisions = 21 1 1"),), "the mesh or the place of the sheet"),
+    "size": ((("175 9 0.78", "176 9 0.78"),), "the mesh or the place of the sheet"),
     "element": ((("element = solid_shell", "element = hex8"), ("  thickness_points = 3\n", "")), "the mesh"),
     "hardening": ((("K=565", "K=566"),), "material 'mild_steel'"),
     "name of the material": ((("*MATERIAL mild_steel", "*MATERIAL steel"),

@@ -18,11 +18,11 @@ from dd3.programs import parser_of_runs
 DIE = ROOT / "input_files" / "bending" / "die.bez"
 # Phases reached by the restart file: the first two. Changes of the deck and what the message names as different.
 DIFFERENT = {
-    "other mesh": ((("divisions = 10 2 1", "divisions = 10 3 1"),), "the mesh or its place"),
-    "other size": ((("175 35 0.78", "176 35 0.78"),), "the mesh or its place"),
-    "other element": ((("element = hex8", "element = solid_shell"),), "the mesh or its place"),
+    "other mesh": ((("divisions = 10 2 1", "divisions = 10 3 1"),), "the mesh or the place of the sheet"),
+    "other size": ((("175 35 0.78", "176 35 0.78"),), "the mesh or the place of the sheet"),
+    "other element": ((("element = hex8", "element = solid_shell"),), "the mesh or the place of the sheet"),
     "other mesh and material": ((("divisions = 10 2 1", "divisions = 10 3 1"), ("K=565", "K=566")),
-                                "the mesh or its place, material 'mild_steel'"),
+                                "the mesh or the place of the sheet, material 'mild_steel'"),
     "other hardening": ((("K=565", "K=566"),), "material 'mild_steel'"),
     "other criterion": ((("yield = hill48 F=0.284 G=0.358 H=0.642 L=1.289 M=1.289 N=1.289", "yield = von_mises"),),
                         "material 'mild_steel'"),

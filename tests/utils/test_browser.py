@@ -80,7 +80,8 @@ def test_step_and_tool(page):
     assert shown(page, "") == with_tool
 
 
-@pytest.mark.parametrize("field, elements", [("thinning", False), ("stress:22", False), ("thinning", True)])
+@pytest.mark.parametrize("field, elements", [
+    ("thinning", False), ("stress:22", False), ("stress:12", False), ("thinning", True)])
 def test_hover(page, field, elements):
     """Check the value under the mouse, at a node and in its mirror image, against that of the run."""
     shown(page, f'v.state.step = 1; v.select("{field}", {str(elements).lower()}); v.look("iso")')
@@ -92,7 +93,7 @@ def test_hover(page, field, elements):
         node, element = found["node"], found["element"]
         assert np.abs(np.array(found["position"]) - points[node - 1] * [sign, 1, 1]).max() < 2e-3
         assert np.linalg.norm(found["position"] - target) < 1.5
-        expected = values[element - 1] if elements else values[node - 1]
+        expected = values[element - 1] if elements else values[node - 1] * (sign if field == "stress:12" else 1)
         assert abs(found["value"] - expected) <= np.ptp(values) / 65535, (found, expected)
         page.mouse.move(x, y)
         page.wait_for_function(f"document.getElementById('told').textContent.includes('node {node} at')")
@@ -100,6 +101,27 @@ def test_hover(page, field, elements):
         assert f"element {element}" in told
         if field == "thinning":
             assert f"{float(f'{100 * expected:.4g}'):g} %" in told.replace("−", "-")[:60] or elements
+
+
+def test_signs_of_images(page):
+    """Check the colours of the images across x, across y and across both: those of the other sign, of a scale from -h to
+    h, for a stress that is odd across each, the same as of the part for others; and the field along a section."""
+    for field, signs in (("stress:12", (-1, -1, 1)), ("stress:22", (1, 1, 1))):
+        shown(page, f'v.state.step = 1; v.select("{field}", false)')
+        part, *images = (np.array(array)[::2] for array in page.evaluate(
+            "window.viewer.sheets.map(({geometry}) => Array.from(geometry.getAttribute('uv').array))"))
+        assert np.ptp(part) > 0.1 and len(images) == 3
+        for image, sign in zip(images, signs):
+            assert np.abs(image - (part if sign > 0 else 1 - part)).max() < 1e-6
+    page.locator("#cut").check()
+    page.locator("#normal").select_option("y")
+    page.locator("#offset").evaluate("slider => { slider.value = 800; slider.oninput(); }")
+    shown(page, 'v.select("stress:12", false)')
+    along = page.evaluate("window.viewer.section.along.data.datasets.map(({data}) => data.map(({y, at}) => [at[0], y]))")
+    x, value = np.array(along[0]).T
+    assert np.abs(value).max() > 1 and x.min() < -39 and x.max() > 39
+    assert ((value * x)[np.abs(x) > 1] > 0).all()  # the stress of the part is positive
+    page.locator("#cut").uncheck()
 
 
 def test_section(page):

@@ -2,6 +2,7 @@
 """A part in its checking fixture, by the input file that `dd3 deviation --deck` writes: beam theory."""
 
 import subprocess
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -11,6 +12,7 @@ from helpers import ROOT, call
 from dd3.deviation import compare
 from dd3.errors import Problem
 from dd3.fixture import read_fixture
+from dd3.fixture_deck import materials
 from dd3.run import read_frame
 
 YOUNG, DENSITY, WIDTH = 2e5, 7.85e-9, 10.0
@@ -72,6 +74,7 @@ def computed(program, folder, deck, text, first=""):
     (folder / "fixture.toml").write_text(FIXTURE.format(first=first) + text)
     run(program, folder / "part.dat")
     call("deviation", folder / "part.out", "--fixture", folder / "fixture.toml", "--deck", folder / "clamped.dat")
+    assert f'  from = "{(folder / "part.out").resolve()}"' in (folder / "clamped.dat").read_text()  # it may have blanks
     run(program, folder / "clamped.dat")
     said = call("deviation", folder / "clamped.out", "--fixture", folder / "fixture.toml")
     tables = {path.stem: pd.read_csv(path) for path in (folder / "clamped.out" / "deviation").glob("*.csv")}
@@ -83,6 +86,16 @@ def run(program, deck):
     done = subprocess.run([program, "--quiet", "--threads", "1", "--output", deck.with_suffix(".out"), deck],
                           capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+
+
+def test_files_of_the_run():
+    """Check that files of laws are named from the folder in which the run was made, not from the present one."""
+    entries = [{"key": "hardening", "text": 'table file = "a b.csv"', "default": False, "at": {"file": "decks/part.dat"}},
+               {"key": "density", "text": "1e-9", "default": False, "at": {"file": "decks/part.dat"}}]
+    job = {"command": {"working_directory": "/runs"},
+           "input": {"blocks": [{"keyword": "material", "name": "m", "entries": entries}]}}
+    lines = materials(job, SimpleNamespace(gravity=None))
+    assert '  hardening = table file = "/runs/decks/a b.csv"' in lines
 
 
 def test_gravity_on_three_locators(program, tmp_path):

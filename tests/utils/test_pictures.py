@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Pictures of a small made-up run, and of inputs before a run."""
 
+import json
 import struct
 import subprocess
 import sys
@@ -93,6 +94,23 @@ def test_curves(tmp_path):
     assert found.quantity == "punch displacement (mm)" and np.allclose(found.along, [0, 4, 10])
     found = force.curve(history, phases=["turn"])
     assert found.quantity == "roll angle (degrees)" and list(found.along) == [0, 20, 40]
+
+
+def test_progress_of_phases_that_end_early(tmp_path):
+    """Check the progress where a phase ends at 0.1, the next has one increment, and where the rows begin in between; a
+    run that has reached its end is not marked as stopped."""
+    row = "{},{},0,{}" + ",0" * 12 + ",0,1,1\n"
+    rows = (("a", 0), ("a", 0.05), ("a", 0.1), ("b", 1), ("c", 0.5), ("c", 0.8))
+    (tmp_path / "history.csv").write_text(HEAD + "".join(row.format(i, *one) for i, one in enumerate(rows)))
+    history = read_frame(tmp_path, "history.csv")
+    assert np.allclose(force.progress_of(history, np.arange(6)), [0, 0.05, 0.1, 1.1, 1.6, 1.9])
+    assert np.allclose(force.progress_of(history, np.array([2, 3])), [0, 1])
+    assert np.allclose(force.progress_of(history, np.array([3, 4, 5])), [0, 0.5, 0.8])
+    assert force.curve(history, phases=["c"]).stopped
+    job = {"format": "dd3imp run", "format_version": 2, "program": {"name": "dd3imp", "version": "1"}, "title": "",
+           "outcome": {"state": "reached"}}
+    (tmp_path / "run.json").write_text(json.dumps(job))
+    assert not force.curve(history, phases=["c"]).stopped
 
 
 def test_sheet(run, tmp_path):

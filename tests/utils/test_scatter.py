@@ -202,8 +202,8 @@ def test_wrong_descriptions_are_refused(program) -> None:
                           ({"results": "[]", "bands": '["thinning"]'}, "'thinning' is no band"),
                           ({"results": '["springback@a"]', "places": "{ a = [1, 1] }"}, "no springback"),
                           ({"results": '["forming_limit"]'}, "no forming limit curve"),
-                          ({"seed": '"x"'}, "seed is 'x'; expected a whole number"),
-                          ({"set": "[1]"}, "expected a table of keys"), ({"results": '"right_rx"'}, "expected a list"),
+                          ({"seed": '"x"'}, "seed is a str; expected a int"),
+                          ({"set": "[1]"}, "expected a dict"), ({"results": '"right_rx"'}, "expected a list"),
                           ({"correlations": '[["a"]]'}, "expected rows of numbers"),
                           ({"limits": "{ right_rx = '5' }"}, "the limit of 'right_rx' is '5'; expected a number"),
                           ({"set": "{ strain = 9 }"}, "'strain' is an input and in set")):

@@ -8,8 +8,8 @@ import re
 
 import numpy as np
 import pytest
-from helpers import call
-from viewer_run import SHAPE, viewed_run
+from helpers import call, write_run
+from viewer_run import HISTORY, PHASES, SHAPE, STATUS, viewed_run
 
 from dd3 import forming_limit
 from dd3.plot.sheet import Run
@@ -103,6 +103,16 @@ def test_springback_of_the_view(scene):
     assert (np.abs(along) <= distance + 1e-4).all() and along.min() < 0 < along.max()
     normals = upward_normals(made.sheet, 0)
     assert np.abs(np.linalg.norm(normals, axis=1) - 1).max() < 1e-12 and (normals[:, 2] > 0.7).all()
+
+
+def test_normals_between_corners(tmp_path):
+    """Check that nodes inside a sheet of two layers, which are no corners of its faces, have the normals above them."""
+    x, y, z = (a.ravel() for a in np.meshgrid([0.0, 2.0, 4.0], [0.0, 2.0], [0.0, 0.5, 1.0], indexing="ij"))
+    number, points = np.arange(18).reshape(3, 2, 3), np.column_stack([x, y, z + 0.5 * x])
+    cells = [[number[i + a, b, j + k] for k in (0, 1) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))]
+             for i in range(2) for j in range(2)]
+    run = write_run(tmp_path / "run", points, points, cells, HISTORY, STATUS, phases=PHASES)
+    assert np.allclose(upward_normals(Sheet(run), 0), np.array([-0.5, 0, 1]) / np.sqrt(1.25))
 
 
 def test_places(scene):

@@ -23,7 +23,7 @@ from matplotlib.figure import Figure
 
 from dd3.errors import Problem
 from dd3.plot.figures import labels_of, new_figure, parser_of_pictures, save_pictures, tidy
-from dd3.run import read_frame
+from dd3.run import read_frame, state_of
 from dd3.sheet import AXES, length
 from dd3.tables import tools_in
 
@@ -126,7 +126,8 @@ def curve(history: pd.DataFrame, tool: str | None = None, phases: Sequence[str] 
         direction = displacement[-1] / np.linalg.norm(displacement[-1])
         along = displacement @ direction
         shown = shown if leader != tool else -force @ direction
-    return Curve(tool, quantity, along, shown, float(history["progress"].iloc[-1]) < 1.0)
+    state = state_of(Path(history.attrs["path"]).parent)  # the last phase of a run may end early
+    return Curve(tool, quantity, along, shown, state != "reached" if state else history["progress"].iloc[-1] < 1.0)
 
 
 def common(tools: Sequence[str]) -> str:

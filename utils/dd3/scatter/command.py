@@ -40,6 +40,7 @@ import pandas as pd
 from dd3.command import new_parser
 from dd3.errors import Problem
 from dd3.plot.figures import new_figure, save
+from dd3.process import refuse
 from dd3.programs import add_program, find_program, made_folder
 from dd3.scatter.results import FORMING_LIMIT, SPRINGBACK, draw, fit_of, profiles, scalar
 from dd3.scatter.sample import coil_rows, distribution, latin_hypercube, read_coils
@@ -70,8 +71,6 @@ class Scatter:
 TYPES: dict[str, type[Any]] = {
     "deck": str, "coils": str, "runs": int, "seed": int, "results": list, "bands": list, "mirror": list,
     "correlations": list, "set": dict, "inputs": dict, "limits": dict, "places": dict}
-WORDS = {str: "a text", int: "a whole number", list: "a list", dict: "a table of keys and values"}
-KEYS = set(TYPES)
 
 
 def read(path: Path) -> Scatter:
@@ -80,13 +79,10 @@ def read(path: Path) -> Scatter:
         found = tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise Problem(f"{path}: {error}") from None
-    wrong, missing = sorted(set(found) - KEYS), sorted({"deck", "results"} - set(found))
-    if wrong or missing:
-        raise Problem(f"{path}: " + (f"no key '{wrong[0]}'" if wrong else f"{missing[0]} is missing")
-                      + f"; there are {', '.join(sorted(KEYS))}")
-    for key, value in found.items():
-        if not isinstance(value, TYPES[key]):
-            raise Problem(f"{path}: {key} is {value!r}; expected {WORDS[TYPES[key]]}")
+    refuse(path, found, TYPES, "")
+    missing = sorted({"deck", "results"} - set(found))
+    if missing:
+        raise Problem(f"{path}: {missing[0]} is missing; there are {', '.join(TYPES)}")
     scatter = Scatter(path, **found)
     if not scatter.inputs and not scatter.coils:
         raise Problem(f"{path}: inputs is missing; expected [inputs.NAME], coils, or both")

@@ -120,7 +120,8 @@ def combinations(parameters: Sequence[tuple[str, list[str]]], work: Path, settin
 
 
 def is_old(folder: Path, deck: Path) -> bool:
-    """Whether a file that the run in a folder reads has changed since it began or, in its first second, ended."""
+    """Whether a file that the run in a folder reads has changed since its start, whose time is known to a second, or at
+    least since its end."""
     job = read_job(folder)
     since = min(datetime.fromisoformat(job["started"]).timestamp() + RESOLUTION,
                 (folder / "run.json").stat().st_mtime)

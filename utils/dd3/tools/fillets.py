@@ -10,13 +10,14 @@ import numpy as np
 
 from dd3.errors import Problem
 from dd3.tools.faces import spans
+from dd3.tools.plane import crosses
 
 # Distance over the size of the model within which a point is on a face; cosine between normals there.
 ON, PARALLEL = 1e-6, 0.999
 # Divisions of the range of the parameters at which points inside a face are sought, up to this number of points.
 DIVISIONS, POINTS = (4, 12, 40, 130), 8
-# Points of an edge at which the outline of a fillet is taken; relative size of a gap of the outline that is none; lines
-# between points, counted along the outline, that may cross as their edges are tangent.
+# Points of an edge at which the outline of a fillet is taken; relative size of a gap of it that is none; pieces
+# between points up to which the outline may cross where edges are tangent.
 OUTLINE, CLOSED, NEAR = 33, 1e-6, 3
 
 
@@ -60,27 +61,10 @@ def crosses_itself(gmsh: Any, tag: int) -> bool:
             parts.append(np.reshape(gmsh.model.reparametrizeOnSurface(1, abs(edge), t, tag), (-1, 2)))
     except Exception:  # an edge whose curve on the surface is missing
         return False
-    start = np.concatenate([part[:-1] for part in parts])
-    size = np.ptp(start, axis=0)
+    outline = np.concatenate([part[:-1] for part in parts])
     gaps = [after[0] - part[-1] for part, after in zip(parts, parts[1:] + parts[:1])]
-    if not (size > 0).all() or (np.abs(gaps) > CLOSED * size).any():
-        return False
-    start = start / size
-    along = np.roll(start, -1, axis=0) - start
-    apart = start[None] - start[:, None]
-
-    def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-        return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
-
-    one, other = along[:, None], along[None]
-    area, number = cross(one, other), np.arange(len(start))
-    parallel = np.abs(area) < CLOSED * np.linalg.norm(one, axis=2) * np.linalg.norm(other, axis=2)
-    way = np.abs(number[:, None] - number)
-    meet = ~parallel & (np.minimum(way, len(start) - way) > NEAR)
-    for direction in (other, one):
-        place = cross(apart, direction) / np.where(parallel, 1.0, area)
-        meet &= (place > 0) & (place < 1)
-    return bool(meet.any())
+    closed = (np.abs(gaps) <= CLOSED * np.ptp(outline, axis=0)).all()
+    return bool(closed) and crosses(outline, NEAR)
 
 
 def faces_of_volume(gmsh: Any, volume: int) -> list[int]:

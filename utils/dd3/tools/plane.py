@@ -179,16 +179,17 @@ def fit_middles(nodes: np.ndarray, loops: list[list[Side]]) -> None:
                       - nodes[:, ::2, ::2].sum(axis=(1, 2)) / 4)
 
 
-def crosses(corner: np.ndarray) -> bool:
-    """Tell whether a closed line (n, 2) crosses itself."""
+def crosses(corner: np.ndarray, near: int = 0) -> bool:
+    """Tell whether a closed line (n, 2) crosses itself; pieces of it up to `near` apart along it may cross."""
     a, b = corner, np.roll(corner, -1, axis=0)
+    way = np.abs(np.subtract.outer(*[np.arange(len(corner))] * 2))
 
     def side(p: np.ndarray, q: np.ndarray, r: np.ndarray) -> np.ndarray:
         return np.sign((q[..., 0] - p[..., 0]) * (r[..., 1] - p[..., 1])
                        - (q[..., 1] - p[..., 1]) * (r[..., 0] - p[..., 0]))
 
     apart = side(a[:, None], b[:, None], a[None]) * side(a[:, None], b[:, None], b[None]) < 0
-    return bool((apart & apart.T).any())
+    return bool((apart & apart.T & (np.minimum(way, len(corner) - way) > near)).any())
 
 
 def is_folded(corner: np.ndarray) -> bool:

@@ -68,6 +68,23 @@ function paint(mesh, field, values, shown) {
   return mesh.split;
 }
 
+// Return the sign of a field in an image with the signs of its axes.
+const signOf = (field, sign) => (field.odd ?? []).reduce((product, axis) => product * sign["xyz".indexOf(axis)], 1);
+
+// Return a painted geometry with the colours of its values with the other sign.
+function oppositeOf(geometry, { low, high }) {
+  const { array } = geometry.getAttribute("uv");
+  geometry.opposite ??= new library.BufferGeometry().setAttribute("uv", numbers(array.length, 2));
+  const { opposite } = geometry;
+  for (const name of ["position", "normal"]) opposite.setAttribute(name, geometry.getAttribute(name));
+  opposite.setIndex(geometry.getIndex());
+  const uv = opposite.getAttribute("uv");
+  for (let i = 0; i < array.length; i += 2) uv.array[i] = -array[i] - (2 * low) / (high - low);
+  uv.needsUpdate = true;
+  opposite.boundingSphere = geometry.boundingSphere;
+  return opposite;
+}
+
 // A triangle has the value of its element, or of names at the nodes the largest of its nodes.
 function valueOfTriangle(mesh, field, values, triangle) {
   if (field.elements) return values[mesh.owners[triangle]];

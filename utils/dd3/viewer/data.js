@@ -29,7 +29,7 @@ function read(array) {
 const readAll = (arrays) => Promise.all(arrays.map(read));
 
 // Return the lines in which a plane cuts triangles with corners `at`, of an image with the signs of its axes: each with
-// its ends, their points, and the corners p, q between which they are. `size`: extent of the sheet.
+// its ends, their points, the corners p, q between which they are, and the signs. `size`: extent of the sheet.
 function cutOf(triangles, at, sign, { normal, distance }, size, keep = () => true) {
   const height = new Float64Array(at.length / 3),
     found = [];
@@ -55,7 +55,7 @@ function cutOf(triangles, at, sign, { normal, distance }, size, keep = () => tru
           point: [0, 1, 2].map((k) => sign[k] * ((1 - part) * at[3 * p + k] + part * at[3 * q + k])),
         };
       });
-    found.push({ ends, triangle: t / 3 });
+    found.push({ ends, triangle: t / 3, sign });
   }
   return found;
 }
@@ -80,9 +80,9 @@ function chained(segments, size) {
     while (segment) {
       left.delete(segment);
       const [a, b] = key(segment.ends[0]) === key(end) ? segment.ends : [...segment.ends].reverse();
-      chain.push({ length, end: a, triangle: segment.triangle });
+      chain.push({ length, end: a, segment });
       length += Math.hypot(...a.point.map((value, k) => b.point[k] - value));
-      chain.push({ length, end: b, triangle: segment.triangle });
+      chain.push({ length, end: b, segment });
       end = b;
       segment = at.get(key(b)).find((one) => left.has(one));
     }

@@ -129,12 +129,11 @@ class Scene:
             for part in parts:
                 field = f"{name}:{part}" if part else name
                 values = [self.values(picture, field, at_cells) for picture in self.pictures]
-                kind, label = self.kind(name, data), self.sheet.component(0, field, at_cells)[1]
-                if set(odd_axes(field)) & set(self.mirror):  # its sign is another one in the image
-                    label += ", of the part computed"
-                yield {"name": field, "label": label,
+                kind = self.kind(name, data)
+                odd = [axis for axis in odd_axes(field) if axis in self.mirror]
+                yield {"name": field, "label": self.sheet.component(0, field, at_cells)[1], "odd": odd,
                        "help": text_of(data.attrs.get("description", "")), "elements": at_cells, **kind,
-                       **self.written(values, np.issubdtype(data.dtype, np.integer), kind["percent"], name)}
+                       **self.written(values, np.issubdtype(data.dtype, np.integer), kind["percent"], name, bool(odd))}
 
     def values(self, picture: Picture, field: str, at_cells: bool) -> np.ndarray | None:
         """Return a field at the nodes or elements of a skin; None for elements of another mesh."""
@@ -156,12 +155,15 @@ class Scene:
             return named(list(map(str, range(int(data[:].max()) + 1))))
         return {"percent": scale.in_per_cent(name)}
 
-    def written(self, values: Sequence[np.ndarray | None], whole: bool, percent: bool = False, name: str = ""
-                ) -> dict[str, Any]:
-        """Return arrays of a field, one for each step of the view, its scale at each of them, and that of all."""
+    def written(self, values: Sequence[np.ndarray | None], whole: bool, percent: bool = False, name: str = "",
+                odd: bool = False) -> dict[str, Any]:
+        """Return arrays of a field, one for each step of the view, its scale at each of them, and that of all. odd: its
+        sign is another one in mirror images."""
         factor = 100.0 if percent else 1.0
         ends = [None if part is None else tuple(factor * float(end(part)) for end in (np.nanmin, np.nanmax))
                 for part in values]
+        if odd:
+            ends = [pair and (min(pair[0], -pair[1]), max(pair[1], -pair[0])) for pair in ends]
         lows, highs = zip(*(pair for pair in ends if pair))
         add = self.arrays.add_whole if whole else self.arrays.add
         return {"values": [None if part is None else add(part) for part in values],

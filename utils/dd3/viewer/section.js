@@ -105,9 +105,9 @@ class Section {
         : (1 - part) * values[mesh.places[p]] + part * values[mesh.places[q]];
     this.along.options.scales.y.title.text = labelOf(field);
     this.along.data.datasets = chained(upper, this.stage.size).map((chain, i) => {
-      const points = chain.map(({ length, end, triangle }) => ({
+      const points = chain.map(({ length, end, segment }) => ({
         x: length,
-        y: factor * value(end, triangle),
+        y: factor * signOf(field, segment.sign) * value(end, segment.triangle),
         at: end.point,
       }));
       return lineSet(i ? `_${i}` : field.label, "#0072b2", points, 1.6);

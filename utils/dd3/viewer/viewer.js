@@ -126,11 +126,14 @@ class Viewer {
   // Put the sheet, its lines and the drawn shape into the images.
   place(drawn) {
     const { mesh, values, shown } = this.state;
-    const geometry = values ? paint(mesh, this.field(), values, shown) : mesh.smooth;
+    const field = this.field();
+    const painted = values ? paint(mesh, field, values, shown) : mesh.smooth;
+    const opposite = values && field.odd?.length ? oppositeOf(painted, shown) : painted;
     const visible = element("sheet").checked;
     const before = drawn && geometryOf(numbers(drawn, 3), mesh.lines.getIndex());
     this.stage.images.forEach((group, i) => {
       group.visible = i < this.stage.shown();
+      const geometry = signOf(field, this.stage.signs[i]) < 0 ? opposite : painted;
       Object.assign(this.sheets[i], { geometry, visible });
       Object.assign(this.lines[i], { geometry: mesh.lines, visible: visible && element("lines").checked });
       this.drawnLines[i].visible = !!drawn;
@@ -153,7 +156,8 @@ class Viewer {
     const corners = [0, 1, 2].map((k) => mesh.places[mesh.triangles[3 * hit.faceIndex + k]]);
     const place = corners.reduce((best, i) => (far(i) < far(best) ? i : best));
     const owner = mesh.owners[hit.faceIndex];
-    const value = values ? values[this.field().elements ? owner : place] : null;
+    const field = this.field();
+    const value = values ? signOf(field, sign) * values[field.elements ? owner : place] : null;
     return { place, owner, node: mesh.nodes[place], element: mesh.elements[owner], position: position(place), value };
   }
 
