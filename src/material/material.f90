@@ -48,6 +48,7 @@ module dd3_material_material
     procedure :: back_stress
     procedure :: elastic_strain
     procedure :: describe_internal_variables
+    procedure :: constant_value
   end type material_t
 
   !> Largest number of substeps of a strain increment.
@@ -274,5 +275,14 @@ contains
 
     call describe_composition(self%laws, rows)
   end subroutine describe_internal_variables
+
+  !> Return the value of an internal variable of other materials that this one lacks: its
+  !> temperature, which is constant; zero of any other.
+  pure real(wp) function constant_value(self, name)
+    class(material_t), intent(in) :: self
+    character(len=*), intent(in) :: name
+
+    constant_value = merge(self%laws%heat%initial, 0.0_wp, name == "temperature")
+  end function constant_value
 
 end module dd3_material_material

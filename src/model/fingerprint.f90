@@ -249,8 +249,7 @@ contains
     integer :: k
 
     held = phase%active(tool) .and. .not. phase%pressed(tool)
-    if (held .and. norm2(phase%move(:, tool)) <= 0.0_wp .and. phase%gap_other(tool) == 0 .and. &
-        .not. phase%turns(tool)) return
+    if (held .and. .not. phase%moves(tool)) return
     call digest%add(name)
     if (phase%turns(tool)) then
       call digest%add([phase%turn(tool)%centre, phase%turn(tool)%axis, phase%turn(tool)%angle])

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
 !> Internal variables of all materials of a model, for output: those of equal name form one field,
-!> which a material without the variable leaves at zero. The equivalent plastic strain, which every
+!> which is constant in a material without the variable. The equivalent plastic strain, which every
 !> material has first, is not listed.
 module dd3_model_internal_variables
   use dd3_base_kinds, only : wp
@@ -22,7 +22,7 @@ module dd3_model_internal_variables
     !> Index of its first component among the internal variables of each material, `(n_material)`; 0
     !> if the material lacks it.
     integer, allocatable :: first(:)
-    !> Value at a stored zero, `(n_material)`.
+    !> Value at a stored zero, `(n_material)`, or in a material that lacks it.
     real(wp), allocatable :: offset(:)
   end type variable_t
 
@@ -35,7 +35,7 @@ contains
 
     type(internal_variable_t), allocatable :: rows(:)
     type(variable_t), allocatable :: found(:)
-    integer :: m, i, k, n
+    integer :: m, i, j, k, n
 
     n = 0
     allocate (found(sum(material%n_internal)))
@@ -50,7 +50,7 @@ contains
           n = k
           found(k)%row = rows(i)
           allocate (found(k)%first(size(material)), source=0)
-          allocate (found(k)%offset(size(material)), source=0.0_wp)
+          found(k)%offset = [(material(j)%constant_value(rows(i)%name), j=1, size(material))]
         end if
         found(k)%first(m) = rows(i)%first
         found(k)%offset(m) = rows(i)%offset
@@ -60,7 +60,7 @@ contains
   end subroutine new_variables
 
   !> Return the output components of a variable at a point: those of a tensor in global axes, 11 22
-  !> 33 12 23 13, others as the law stores them; zero if the material lacks it.
+  !> 33 12 23 13, others as the law stores them; the constant if the material lacks it.
   pure function global_components(variable, material, values, axes) result(components)
     type(variable_t), intent(in) :: variable
     !> Number of the material.
@@ -73,10 +73,10 @@ contains
 
     integer :: first
 
-    components = 0.0_wp
+    components = variable%offset(material)
     first = variable%first(material)
     if (first == 0) return
-    components = variable%offset(material) + values(first:first + variable%row%n_component - 1)
+    components = components + values(first:first + variable%row%n_component - 1)
     if (variable%row%n_component /= 6) return
     components = matmul(kelvin_rotation(axes), components)/kelvin_factor
     components = components(kelvin_position)

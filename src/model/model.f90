@@ -27,6 +27,8 @@ module dd3_model_model
   type, extends(contact_data_t) :: model_t
     character(len=:), allocatable :: title
     integer :: n_tool = 0, n_internal = 0
+    !> Number of locating pins, supports of *BOUNDARY with a diameter.
+    integer :: n_pin = 0
     type(material_t), allocatable :: material(:)
     character(len=24), allocatable :: material_name(:)
     !> Check sums of their parameters.

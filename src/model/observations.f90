@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: GPL-3.0-or-later
-!> Part of the state that only reports read: how deep tools entered the sheet between its nodes, and
-!> where it left them over open edges.
+!> Part of the state that only reports read: how deep tools entered the sheet between its nodes,
+!> where it left them over open edges, and what locating pins carried.
 module dd3_model_observations
   use dd3_base_kinds, only : wp
   use dd3_model_state_visitor, only : state_visitor_t
@@ -21,6 +21,9 @@ module dd3_model_observations
     !> until then, `(n_tool)`, mm.
     integer, allocatable :: open_edge(:, :)
     real(wp), allocatable :: open_edge_displacement(:)
+    !> Largest force across each locating pin in the running phase, N, and then the thickness of the
+    !> sheet there, mm, and its flow stress, MPa, `(3, n_pin)`.
+    real(wp), allocatable :: pin_load(:, :)
   contains
     procedure :: begin_phase
     procedure :: walk
@@ -29,13 +32,14 @@ module dd3_model_observations
 contains
 
   !> Begin without observations.
-  subroutine new_observations(self, n_tool)
+  subroutine new_observations(self, n_tool, n_pin)
     type(observations_t), intent(out) :: self
-    integer, intent(in) :: n_tool
+    integer, intent(in) :: n_tool, n_pin
 
     allocate (self%depth(n_tool), self%largest_depth(n_tool), self%deepest_radius(n_tool), &
         self%open_edge_displacement(n_tool), source=0.0_wp)
     allocate (self%deepest_face(n_tool), self%open_edge(3, n_tool), source=0)
+    allocate (self%pin_load(3, n_pin), source=0.0_wp)
     call self%begin_phase()
   end subroutine new_observations
 
@@ -48,6 +52,7 @@ contains
     self%deepest_radius = huge(1.0_wp)
     self%open_edge = 0
     self%open_edge_displacement = 0.0_wp
+    self%pin_load = 0.0_wp
   end subroutine begin_phase
 
   !> Pass every component to a visitor.
@@ -62,6 +67,7 @@ contains
     call visitor%integers("open_edge", size(self%open_edge), self%open_edge)
     call visitor%reals("open_edge_displacement", size(self%open_edge_displacement), &
         self%open_edge_displacement)
+    call visitor%reals("pin_load", size(self%pin_load), self%pin_load)
   end subroutine walk
 
 end module dd3_model_observations

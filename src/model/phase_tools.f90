@@ -50,6 +50,7 @@ module dd3_model_phase_tools
     !> this phase presses, `(3, n)`; not allocated if the forces vary linearly.
     real(wp), allocatable :: press_table(:, :)
   contains
+    procedure :: moves
     procedure :: turns
     procedure :: tilts
     procedure :: turn_factor
@@ -65,6 +66,14 @@ module dd3_model_phase_tools
   end type phase_tools_t
 
 contains
+
+  !> Whether a tool that is not pressed has a path: a displacement, a gap to another tool, an angle.
+  pure logical function moves(self, tool)
+    class(phase_tools_t), intent(in) :: self
+    integer, intent(in) :: tool
+
+    moves = norm2(self%move(:, tool)) > 0.0_wp .or. self%gap_other(tool) > 0 .or. self%turns(tool)
+  end function moves
 
   !> Whether a tool turns.
   pure logical function turns(self, tool)

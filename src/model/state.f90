@@ -38,7 +38,7 @@ contains
     call new_sheet_state(self%sheet, model, sheet)
     call new_contact_state(self%contact, model%n_tool, model%n_contact)
     call new_tools_state(self%tools, model)
-    call new_observations(self%observed, model%n_tool)
+    call new_observations(self%observed, model%n_tool, model%n_pin)
     call new_terms(self%term, model)
     call new_phase_start(self%start, self)
   end subroutine new_state

@@ -55,7 +55,7 @@ module dd3_output_closing
 
   !> Locating pin in a hole of the sheet, at the largest force that it carries in a phase.
   type :: pin_t
-    !> Name of its support; not allocated before the first increment.
+    !> Name of its support.
     character(len=:), allocatable :: name
     !> Diameter, mm, and force across its axis, N.
     real(wp) :: diameter = 0.0_wp, force = 0.0_wp
@@ -78,7 +78,6 @@ module dd3_output_closing
     type(punch_t), allocatable :: punch(:)
     type(held_t), allocatable :: holder(:)
     type(support_t) :: support
-    !> Those of the whole phase; in a continued run those since its start.
     type(pin_t), allocatable :: pin(:)
     !> Damage of a law of fracture, and ratio to the forming limit through the whole thickness.
     type(reached_t) :: damage, forming

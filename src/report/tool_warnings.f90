@@ -84,7 +84,7 @@ contains
     text = ""
     associate (phase => model%phase(state%phase))
       if (state%tools%touched(tool)) return
-      if (.not. phase%pressed(tool) .and. norm2(phase%move(:, tool)) <= 0.0_wp) return
+      if (.not. (phase%pressed(tool) .or. phase%moves(tool))) return
     end associate
     associate (distance => model%tolerance%tool_search)
       hit = candidate_hits(model, tool, state%placement(tool), state%x, distance, distance)

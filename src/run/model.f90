@@ -190,7 +190,7 @@ contains
         call run_increment(run, model, error)
         call note_solution(run, model, log)
         if (committed%increment > done) then
-          call observe_pins(case, model, committed, run%summary%phase(number)%closing%pin)
+          call observe_pins(case, model, committed)
           call write_increment(run, model, next_output, log, late)
           call tell_limits(run, model, log)
           call keep_first(error, late)

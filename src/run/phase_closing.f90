@@ -9,7 +9,7 @@ module dd3_run_phase_closing
   use dd3_report_closing, only : measure_closing
   use dd3_report_closing_notes, only : add_closing_notes
   use dd3_report_limits_reached, only : measure_limits
-  use dd3_run_pin_load, only : add_pin_notes, observe_pins
+  use dd3_run_pin_load, only : add_pin_notes, loaded_pins
   use dd3_run_support_load, only : add_support_note, find_support
   implicit none
   private
@@ -35,8 +35,7 @@ contains
       call measure_limits(model, state, closing)
       call add_closing_notes(model, state, closing, before, notes)
       call add_support_note(model, state, closing%support, notes)
-      ! A phase that a restart continues at its end has no increment.
-      call observe_pins(case, model, state, closing%pin)
+      closing%pin = loaded_pins(case, state)
       call add_pin_notes(model, state, closing%pin, notes)
     end associate
   end subroutine close_phase

@@ -17,46 +17,84 @@ module dd3_run_pin_load
   use dd3_run_support_load, only : nodes_of
   implicit none
   private
-  public :: add_pin_notes, observe_pins
+  public :: add_pin_notes, loaded_pins, observe_pins
 
 contains
 
   !> Take the forces on the pins that are larger than before in the running phase.
-  subroutine observe_pins(case, model, state, pin)
+  subroutine observe_pins(case, model, state)
     type(case_t), intent(in) :: case
     type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    !> In the order of the input; made at the first increment of a phase.
-    type(pin_t), allocatable, intent(inout) :: pin(:)
+    type(state_t), intent(inout) :: state
 
     real(wp) :: reaction(3, model%n_node), force
     integer, allocatable :: node(:), place(:)
-    integer :: axis, i, k
+    integer :: axis, k
 
-    place = pack([(i, i=1, size(case%boundary))], case%boundary%pin > 0.0_wp)
-    if (.not. allocated(pin)) allocate (pin(size(place)))
+    place = places_of_pins(case)
     if (size(place) == 0) return
     reaction = reactions(model, state)
     do k = 1, size(place)
-      associate (support => case%boundary(place(k)))
+      associate (support => case%boundary(place(k)), load => state%observed%pin_load(:, k))
         node = nodes_of(model, support%set)
         force = norm2([(merge(sum(reaction(axis, node)), 0.0_wp, support%fix(axis)), axis=1, 3)])
-        if (allocated(pin(k)%name) .and. force <= pin(k)%force) cycle
-        pin(k)%name = support%source%called()
-        pin(k)%diameter = support%pin
-        pin(k)%force = force
-        call measure_sheet(model, state, node, pin(k))
+        if (load(2) > 0.0_wp .and. force <= load(1)) cycle
+        load = [force, thickness_at(model, state, node), flow_stress_at(model, state, node)]
       end associate
     end do
   end subroutine observe_pins
 
-  !> Set thickness and flow stress of the sheet at a pin: the mean length of the columns of its
-  !> nodes, and the mean over the integration points of the elements there.
-  subroutine measure_sheet(model, state, node, pin)
+  !> Return the places of the locating pins among the supports.
+  pure function places_of_pins(case) result(place)
+    type(case_t), intent(in) :: case
+    integer, allocatable :: place(:)
+
+    integer :: i
+
+    place = pack([(i, i=1, size(case%boundary))], case%boundary%pin > 0.0_wp)
+  end function places_of_pins
+
+  !> Return the pins with the largest forces that they have carried in the running phase, in the
+  !> order of the input.
+  pure function loaded_pins(case, state) result(pin)
+    type(case_t), intent(in) :: case
+    type(state_t), intent(in) :: state
+    type(pin_t), allocatable :: pin(:)
+
+    integer, allocatable :: place(:)
+    integer :: k
+
+    place = places_of_pins(case)
+    allocate (pin(size(place)))
+    do k = 1, size(place)
+      associate (support => case%boundary(place(k)), load => state%observed%pin_load(:, k))
+        pin(k)%name = support%source%called()
+        pin(k)%diameter = support%pin
+        pin(k)%force = load(1)
+        pin(k)%thickness = load(2)
+        pin(k)%flow_stress = load(3)
+      end associate
+    end do
+  end function loaded_pins
+
+  !> Return the thickness of the sheet at a pin, the mean length of the columns of its nodes, mm.
+  pure real(wp) function thickness_at(model, state, node) result(thickness)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     integer, intent(in) :: node(:)
-    type(pin_t), intent(inout) :: pin
+
+    integer :: i
+
+    thickness = sum([(norm2(state%x(:, model%column(2, node(i))) - &
+        state%x(:, model%column(1, node(i)))), i=1, size(node))])/real(size(node), wp)
+  end function thickness_at
+
+  !> Return the flow stress of the sheet at a pin, the mean over the integration points of the
+  !> elements there, MPa.
+  real(wp) function flow_stress_at(model, state, node) result(flow_stress)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: node(:)
 
     real(wp) :: total(2)
     logical :: member(model%n_node)
@@ -64,8 +102,6 @@ contains
 
     member = .false.
     member(model%column(1, node)) = .true.
-    pin%thickness = sum([(norm2(state%x(:, model%column(2, node(i))) - &
-        state%x(:, model%column(1, node(i)))), i=1, size(node))])/real(size(node), wp)
     total = 0.0_wp
     do i = 1, size(model%part%element)
       e = model%part%element(i)
@@ -76,8 +112,8 @@ contains
       end do
     end do
     call sum_over_ranks(2, total)
-    pin%flow_stress = total(1)/max(1.0_wp, total(2))
-  end subroutine measure_sheet
+    flow_stress = total(1)/max(1.0_wp, total(2))
+  end function flow_stress_at
 
   !> Add a note on each pin that carries a force while tools act, or a warning if the hole yields.
   subroutine add_pin_notes(model, state, pin, notes)

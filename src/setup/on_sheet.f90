@@ -2,6 +2,7 @@
 !> The parts of the model that depend on the mesh, from the case and a sheet.
 module dd3_setup_on_sheet
   use dd3_base_error, only : error_list_t, location_t
+  use dd3_base_kinds, only : wp
   use dd3_base_text, only : to_text
   use dd3_base_verdict, only : verdict_t, verdict_converged
   use dd3_element_kinematics, only : element_gradients
@@ -208,7 +209,7 @@ contains
     end do
   end function is_one_layer
 
-  !> Set the degrees of freedom that *BOUNDARY fixes.
+  !> Set the degrees of freedom that *BOUNDARY fixes, and the number of its locating pins.
   subroutine set_fixed(model, case, mesh)
     type(model_t), intent(inout) :: model
     type(case_t), intent(in) :: case
@@ -216,6 +217,7 @@ contains
 
     integer :: i
 
+    model%n_pin = count(case%boundary%pin > 0.0_wp)
     allocate (model%fixed(3, model%n_node), source=.false.)
     do i = 1, size(case%boundary)
       call mark_directions(model%fixed, mesh%nodes_of(case%boundary(i)%set), case%boundary(i)%fix)

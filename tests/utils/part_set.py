@@ -1,15 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A set of sheet parts, each with what a die engineer says of it.
-
-    part_set.py FOLDER [NAME ...]          write them as STEP, or BREP, into a folder
-    part_set.py FOLDER --table             read them, and print their table
-
-All are made here by Gmsh and OpenCASCADE.
-"""
+"""A set of sheet parts, each with what a die engineer says of it, made here by Gmsh and OpenCASCADE and written as STEP
+or BREP."""
+import argparse
 import math
 import re
-import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -587,7 +582,12 @@ def table(folder):
 
 
 if __name__ == "__main__":
-    if "--table" in sys.argv:
-        table(made_folder(Path(sys.argv[1])))
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path, help="folder of the STEP files")
+    parser.add_argument("parts", nargs="*", help="their names (all)")
+    parser.add_argument("--table", action="store_true", help="read the files and print the table of docs/parts.md")
+    options = parser.parse_args()
+    if options.table:
+        table(made_folder(options.folder))
     else:
-        write(made_folder(Path(sys.argv[1])), sys.argv[2:] or PARTS)
+        write(made_folder(options.folder), options.parts or PARTS)

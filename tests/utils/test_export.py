@@ -13,6 +13,8 @@ from test_study import DECK
 import dd3
 from dd3.dyna.cards import Reader
 from dd3.dyna.mesh import DynaMesh
+from dd3.errors import Problem
+from dd3.fields import Fields
 from dd3.mesh import read_inp
 
 
@@ -80,6 +82,16 @@ def test_shells(bar):
     assert len(cards("first.k", "INITIAL_STRESS_SHELL")) == 4
 
 
+def test_narrow_shells(program):
+    """Check that elements that are shorter than the sheet is thick give its mid-surface."""
+    Path("narrow.dat").write_text(DECK.replace("divisions = 2 1 1", "divisions = 2 6 1"))
+    subprocess.run([program, "--quiet", "narrow.dat"], check=True, capture_output=True)
+    call("export", "narrow.out", "shells.k", "--shells")
+    nodes, cells = dyna_mesh("shells.k")
+    top = dd3.open("narrow.out").fields[-1].points[:, 2].max()
+    assert len(nodes) == 21 and len(cells) == 12 and np.allclose([place[2] for place in nodes.values()], top / 2)
+
+
 def test_materials(program):
     """Check that two materials are parts and element sets, and that a back-stress is named as left out."""
     region = "*REGION half\n  points = 2 0  2 2\n  side = right\n  material = other\n"
@@ -87,6 +99,13 @@ def test_materials(program):
              "  backstress = prager k=900\n")
     Path("two.dat").write_text(DECK + region + other)
     subprocess.run([program, "--quiet", "two.dat"], check=True, capture_output=True)
+    fields = Fields(Path("two.out"))
+    back = fields.values(fields.last, "back_stress", at_cells=True)[0]
+    assert (fields.component(fields.last, "back_stress:13", at_cells=True)[0] == back[:, 5]).all()
+    tensors = fields.values(fields.last, "stress")[0][:, [[0, 3, 5], [3, 1, 4], [5, 4, 2]]]
+    assert np.allclose(fields.component(fields.last, "stress")[0], np.linalg.norm(tensors, axis=(1, 2)))
+    with pytest.raises(Problem, match="components? 'x' of 'back_stress'; there are: 11, 22"):
+        fields.component(fields.last, "back_stress:x")
     said = call("export", "two.out", "two.k")
     assert "parts: 1 m, 2 other" in said and "left out: back-stresses" in said
     assert [int(line[8:16]) for line in cards("two.k", "ELEMENT_SOLID")] == [1, 2]

@@ -126,11 +126,14 @@ def test_law_of_the_rate():
         Sheet(rated, ratio, rate_sensitivity=m)
 
 
-def test_curve_at_a_rate():
-    """Check the stress of tension at a strain rate, at rest by default."""
+def test_curve_at_a_rate(caplog):
+    """Check the stress of tension at a strain rate, at rest by default; without a law of the rate it is told."""
     rated = material(young=2e5, hardening="perfect Y0=200\n  rate = cowper_symonds C=40 p=5")
     assert rated.curve(0.1)["stress"].iloc[-1] == pytest.approx(200)
     assert rated.curve(0.1, rate=10.0)["stress"].iloc[-1] == pytest.approx(200 * (1 + 0.25**0.2), rel=1e-6)
+    assert not caplog.text
+    assert material(young=2e5, hardening="perfect Y0=200").curve(0.1, rate=10.0)["stress"].iloc[-1] == pytest.approx(200)
+    assert "no law of the strain rate: rate = 10 does not act" in caplog.text
 
 
 def test_directions():

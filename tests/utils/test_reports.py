@@ -364,6 +364,10 @@ def test_springback(tmp_path):
     assert np.abs(found.distance() - 2 * radius * np.sin(angle / 2)).max() < 2e-3
     axis, degrees = twist(sheet, found)
     assert axis == "x" and abs(degrees - 32 * 0.05) < 2e-3, degrees
+    along_y = write_run(tmp_path / "along_y.out", np.roll(start, 1, axis=1), np.roll(free, 1, axis=1), cells,
+                        "\n".join(history) + "\n", STATUS, fields, phases=[DRAW, RELEASED])
+    turned = Sheet(along_y)
+    assert twist(turned, find(turned, [DRAW, RELEASED])) == ("y", pytest.approx(degrees))
     line = sheet.cut(np.eye(3)[0], 10.0)[0]
     assert abs(rotation(line, found, np.eye(3)[0]) - 0.5) < 2e-3
     assert max(map(abs, opening(line, found, np.eye(3)[0]))) < 1e-6

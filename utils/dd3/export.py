@@ -37,9 +37,6 @@ if TYPE_CHECKING:
     from dd3.dyna.material_laws import CardOptions
 
 MOST = 99_999_999  # a label in 8 columns
-# Corners of the faces of a hexahedron that are opposite along each natural axis.
-FACES = (((0, 3, 7, 4), (1, 2, 6, 5)), ((0, 1, 5, 4), (3, 2, 6, 7)), ((0, 1, 2, 3), (4, 5, 6, 7)))
-LONGER = 1.5  # edges through the thickness over the shortest ones, below this
 HEXAHEDRON = 12  # type of VTK
 OWN_BACK_STRESS = ("teodosiu_hu", "yoshida_uemori")  # hardening laws
 
@@ -122,7 +119,7 @@ def rolling_of(path: Path, state: SheetState, points: np.ndarray, cells: np.ndar
     """Return the angles of the rolling direction to the first edges of the shells, degrees."""
     # Here, as the library of the laws is loaded only where it is wanted.
     from dd3.dyna.run_cards import rolling_angles
-    lower, upper = sides(path, points, cells)
+    lower, upper = sides(path, cells)
     return rolling_angles(state.axes[..., 0].mean(axis=1), (points[lower] + points[upper]) / 2)
 
 
@@ -161,7 +158,7 @@ def solid_bounds(points: np.ndarray, cells: np.ndarray) -> list[str]:
 
 def shell_bounds(path: Path, points: np.ndarray, cells: np.ndarray) -> list[str]:
     """Return the bound nodes of the mid-surface and the ends of their edges."""
-    lower, upper = sides(path, points, cells)
+    lower, upper = sides(path, cells)
     number = shell_numbers(lower, upper, len(points))
     bound = [(node, a, b) for (a, b), node in bound_nodes(cells, points).items() if number[[node, a, b]].all()]
     lines = ["".join(f"{number[node]:10d}" for node in nodes) for nodes in bound]
@@ -210,7 +207,7 @@ def shell_lines(path: Path, points: np.ndarray, cells: np.ndarray, part: np.ndar
                 rows: np.ndarray, angles: np.ndarray | None = None) -> list[str]:
     """Return the mid-surface of a sheet of one layer, its thickness given at the nodes: nodes, shells with their parts
     and thicknesses, and angles of their axes, and rows (m, heights, 8) of height, stresses and plastic strain."""
-    lower, upper = sides(path, points, cells)
+    lower, upper = sides(path, cells)
     ends = np.unique(np.stack([lower.ravel(), upper.ravel()], axis=1), axis=0)
     number = shell_numbers(lower, upper, len(points))
     thickness = thickness[ends].mean(axis=1)
@@ -225,16 +222,12 @@ def shell_lines(path: Path, points: np.ndarray, cells: np.ndarray, part: np.ndar
     return lines
 
 
-def sides(path: Path, points: np.ndarray, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the nodes of the elements on the two faces of a sheet of one layer (n, 4): along the shortest edges of
-    those along which no two elements share a face."""
-    length = [np.linalg.norm(points[cells[:, b]] - points[cells[:, a]], axis=2).mean() for a, b in FACES]
-    for axis in np.argsort(length):
-        lower, upper = (cells[:, face] for face in FACES[axis])
-        faces = np.sort(np.concatenate([lower, upper]), axis=1)
-        if length[axis] < LONGER * min(length) and len(np.unique(faces, axis=0)) == len(faces):
-            return lower, upper
-    raise Problem(f"{path}: --shells takes a sheet of one layer of elements")
+def sides(path: Path, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the nodes of the elements on the two faces of a sheet of one layer (n, 4)."""
+    lower, upper = cells[:, :4], cells[:, 4:8]
+    if np.intersect1d(lower, upper).size:
+        raise Problem(f"{path}: --shells takes a sheet of one layer of elements")
+    return lower, upper
 
 
 WRITERS: dict[str, Callable[[Fields, int, Path, Form], None]] = {

@@ -18,7 +18,12 @@ if TYPE_CHECKING:
 AT = "travel in mm, PHASE for its end, or PHASE:PERCENT; the nearest step (default: the last)"  # help of --at
 SAME = 1e-6  # distance of places that are the same, over the size of the sheet
 LIMITED = ("fracture_damage", "forming_limit_ratio")  # fields of the limits that a run follows, 1 at the limit
-COMPONENTS = {"stress": ("11", "22", "33", "12", "23", "13")}
+VECTOR, TENSOR = ("x", "y", "z"), ("11", "22", "33", "12", "23", "13")  # names of components
+
+
+def components_of(count: int) -> tuple[str, ...]:
+    """Return the names of the components of a field by their count: a vector, a symmetric tensor, numbers of others."""
+    return {3: VECTOR, 6: TENSOR}.get(count, tuple(map(str, range(1, count + 1))))
 
 
 def missing(path: Path) -> str:
@@ -213,17 +218,18 @@ class Fields:
 
     def component(self, step: int, field: str, at_cells: bool = False) -> tuple[np.ndarray, str]:
         """Return a field, or a component such as stress:11 or displacement:z, and its label; without a component the
-        magnitude of a vector."""
+        magnitude of a vector or tensor."""
         name, _, chosen = field.partition(":")
         values, unit = self.values(step, name, at_cells)
         values, label, unit = values.astype(float), name.replace("_", " "), f" ({unit})" if unit else ""
         if values.ndim == 1:
             return values, label + unit
-        names = COMPONENTS.get(name, tuple("xyz"[: values.shape[1]]))
+        names = components_of(values.shape[1])
         if chosen in names:
             return values[:, names.index(chosen)], f"{label} {chosen}{unit}"
         if chosen in ("", "magnitude"):
-            return np.linalg.norm(values, axis=1), f"{label}, magnitude{unit}"
+            weights = [1.0 + (names == TENSOR and one[0] != one[1]) for one in names]  # a shear component counts twice
+            return np.sqrt(values**2 @ weights), f"{label}, magnitude{unit}"
         raise Problem(f"{self.path}: no component '{chosen}' of '{name}'; there are: {', '.join(names)}, magnitude")
 
 

@@ -19,7 +19,7 @@ from scipy.optimize import brentq
 
 from dd3 import places
 from dd3.deck import text_of
-from dd3.errors import Problem
+from dd3.errors import LOG, Problem
 from dd3.forming_limit_curve import LOW_CARBON, Curve, exponent_in, keeler_brazier
 from dd3.tools.blocks import Block, blocks_of, lines_of, lines_of_text
 from dd3.tools.set_material import found
@@ -119,6 +119,8 @@ class Material:
         zero, of compression; rate: strain rate, 1/s, of a law of the rate (0: at rest). Columns: strain, stress (MPa),
         plastic_strain (equivalent). The axes of the material do not turn."""
         import pandas as pd
+        if rate and not self.has_rate:
+            LOG.warning(f"the material {self.name} has no law of the strain rate: rate = {rate:g} does not act")
         point, rows, along = self.point(), [(0.0, 0.0, 0.0)], uniaxial(angle)
         for _ in range(steps):
             point.pull(strain / steps, angle, abs(strain) / steps / rate if rate else 0.0)

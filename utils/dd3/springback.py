@@ -134,8 +134,8 @@ def opening(line: Line, found: Springback, normal: np.ndarray) -> tuple[float, f
 
 
 def twist(sheet: Sheet, found: Springback) -> tuple[str, float] | None:
-    """Return the axis along the sheet and the rotation of one end about it against the other, degrees; None where
-    symmetry prevents it."""
+    """Return the axis along the sheet and the rotation of its upper end about it against the lower one, right-handed,
+    degrees; None where symmetry prevents it."""
     start = sheet.start(found.step)
     sizes = np.ptp(start, axis=0)
     axis = int(sizes.argmax())
@@ -146,4 +146,5 @@ def twist(sheet: Sheet, found: Springback) -> tuple[str, float] | None:
         normal = np.eye(3)[axis]
         line = sheet.cut(normal, start[:, axis].min() + part * sizes[axis], step=found.step)[0]
         turned.append(rotation(line, found, normal))
-    return AXES[axis], turned[1] - turned[0]
+    # Sections are seen with x to the right and z upwards, so those normal to y against y.
+    return AXES[axis], (turned[1] - turned[0]) * (-1.0 if AXES[axis] == "y" else 1.0)

@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 
 from dd3 import forming_limit, springback, verdict
 from dd3 import forming_limit_curve as curves
-from dd3.fields import COMPONENTS, odd_axes, text_of
+from dd3.fields import components_of, odd_axes, text_of
 from dd3.plot import scale, skins
 from dd3.plot import sheet as pictures
 from dd3.plot.beads import draped
@@ -123,8 +123,8 @@ class Scene:
         """Return the fields of the run at the nodes or at the elements, vectors by component."""
         where = self.sheet.grid.get("CellData" if at_cells else "PointData", {})
         for name, data in where.items():
-            parts = [""] if data.ndim == 1 else list(COMPONENTS.get(name, AXES[: data.shape[1]]))
-            if data.ndim > 1 and name not in COMPONENTS:
+            parts = [""] if data.ndim == 1 else list(components_of(data.shape[1]))
+            if data.ndim > 1 and len(parts) == len(AXES):
                 parts.append("magnitude")
             for part in parts:
                 field = f"{name}:{part}" if part else name
