@@ -374,7 +374,12 @@ def test_springback(tmp_path):
     call("report", folder, "--section", "x=10", "--output", tmp_path / "report")
     rows, distance = rows_of(tmp_path / "report" / "report.html")["Springback"], found.distance()
     assert rows["largest distance from the drawn shape"] == f"{distance.max():.4g} mm"
-    assert rows["mean distance"] == f"{distance.mean():.4g} mm"
+    mean = np.average(distance, weights=sheet.areas(0))
+    assert rows["mean distance over the area"] == f"{mean:.4g} mm"
     assert rows["twist about x from 10 to 90 % of the length"] == "+1.6 degrees"
     assert rows["section x=10"].startswith("turned by +0.5 degrees; its ends against that by "), rows
+    # A run that only releases a sheet of another one takes it over in its drawn shape.
+    taken_over = [{"number": number, "name": name, "unload": True, "tools": []} for number, name in enumerate("ab", 1)]
+    assert np.allclose(find(sheet, taken_over).distance(), distance)
+    assert find(sheet, [{**taken_over[0], "unload": False}]) is None
     assert find(sheet, [DRAW, {**RELEASED, "tools": [PUNCH]}]) is None and twist(sheet, found._replace(mirror=["x"])) is None

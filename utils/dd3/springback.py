@@ -98,11 +98,14 @@ def steps_with_tools(sheet: Sheet, phases: Sequence[dict]) -> np.ndarray:
 
 
 def find(sheet: Sheet, phases: Sequence[dict], mirror: Sequence[str] = ()) -> Springback | None:
-    """Return the springback of a run whose last phase releases all tools; None for another one.
+    """Return the springback of a run whose last phase releases all tools; None for another one. A run that only
+    releases a sheet of another one takes that over in its drawn shape.
 
     phases: those of run.json. mirror: planes of symmetry of the model beside those on which its supports keep it.
     """
     drawn = steps_with_tools(sheet, phases)
+    if not drawn.size and phases[0]["unload"]:
+        drawn = np.array([0])
     if not drawn.size or drawn[-1] == sheet.count - 1:
         return None
     step = int(drawn[-1])

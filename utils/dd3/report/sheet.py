@@ -152,7 +152,8 @@ def add_springback(report: Report) -> None:
     distance = found.distance()
     report.sprung = float(distance.max())
     rows.insert(0, ("largest distance from the drawn shape", f"{distance.max():.4g} mm"))
-    rows.insert(1, ("mean distance", f"{distance.mean():.4g} mm"))
+    mean = np.average(distance, weights=report.sheet.areas(found.step))
+    rows.insert(1, ("mean distance over the area", f"{mean:.4g} mm"))
     report.add("Springback", "<p>The free shape, moved to the best fit with the drawn one"
                f"{springback.kept(found.mirror)}.</p>" + distance_map(report, found)
                + report.figure("springback", figure, "sections, drawn and free")

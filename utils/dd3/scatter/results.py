@@ -40,7 +40,7 @@ def field_map(run: Path, field: str, mirror: Sequence[str]) -> Map:
         return Map(sheet, sheet.last, *sheet.component(sheet.last, field))
     found = springback.find(sheet, read_job(run)["phases"], mirror)
     if found is None:
-        raise Problem(f"{run}: no springback, as its last phase does not release the sheet")
+        raise Problem(f"{run}: no springback, as its last phase does not release the sheet from tools")
     return Map(sheet, found.step, found.distance(), f"{SPRINGBACK} (mm)")
 
 
