@@ -10,6 +10,7 @@ module dd3_app_warnings
   use dd3_base_message, only : message_list_t
   use dd3_base_text, only : axis_name, to_text
   use dd3_input_case, only : case_t
+  use dd3_model_contact_data, only : all_faces
   use dd3_model_element_length, only : element_length_t, excess_moment, &
       longest_known, measure_elements
   use dd3_model_model, only : model_t
@@ -64,7 +65,7 @@ contains
     end do
   end subroutine unit_warnings
 
-  !> Warn of an unusual friction and compliance of tools.
+  !> Warn of an unusual friction and compliance of tools, and of candidates on side and rim.
   subroutine check_tool_values(case, model, warnings)
     type(case_t), intent(in) :: case
     type(model_t), intent(in) :: model
@@ -90,6 +91,10 @@ contains
             tool%source%at("compliance"), "compliance = "//to_text(tool%compliance)// &
             " mm/MPa of tool '"//tool%source%called()//"'", &
             "unusual; dies and rings of steel have 1e-5 to 1e-3 mm/MPa")
+        if (model%touched_faces(i) == all_faces) call add_unusual(warnings, "W030", &
+            tool%source%at("contact"), "contact of tool '"//tool%source%called()//"'", &
+            "nodes of the upper or lower side of the sheet and of its rim: where these meet, "// &
+            "forces act over the areas of both along their mean normal; expected a set of one")
       end associate
     end do
   end subroutine check_tool_values

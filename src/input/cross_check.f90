@@ -347,10 +347,12 @@ contains
 
     do i = 1, size(case%history)
       do j = 1, size(case%tool)
-        if (case%history(i)%name /= case%tool(j)%name) cycle
+        associate (name => case%history(i)%name, tool => trim(case%tool(j)%name))
+          if (name /= tool .and. name /= tool//"_tilt") cycle
+        end associate
         call errors%push_input(case%history(i)%source%named, "'"// &
-            case%tool(j)%source%called()//"' is the name of a tool: the columns of history.csv "// &
-            "would be ambiguous", "another name", code="E123")
+            case%history(i)%source%called()//"' names columns of tool '"// &
+            case%tool(j)%source%called()//"' in history.csv", "another name", code="E123")
       end do
     end do
   end subroutine check_history_names

@@ -92,8 +92,11 @@ contains
       row("W029", "plane of symmetry to which the model is not symmetric", &
           "A side of the sheet is held along its normal, as on a plane of symmetry, but the "// &
           "flow stresses of the material, gravity, or a tool that reaches it and moves, turns "// &
-          "or tilts across it are not symmetric to it: the result is not that of a part of the "// &
-          "whole sheet.", "The whole sheet. A grip or another support is no plane of symmetry.")]
+          "or tilts across it are not symmetric to it.", &
+          "The whole sheet. A grip or another support is no plane of symmetry."), &
+      row("W030", "tool that touches side and rim of the sheet", &
+          "Where they meet, contact forces act over the areas of both, along their mean normal.", &
+          "`contact = z_max`, `z_min` or `rim`.")]
   end function input_warnings
 
   !> Return the warnings during a run.

@@ -71,21 +71,39 @@ contains
     end do
   end function jacobians
 
-  !> Return the areas of the contact points of this rank, `(n_contact)`, mm2; zero for a node
-  !> without contact faces.
-  pure function point_areas(model, x) result(area)
+  !> Return the areas of the contact points of this rank for the tools that touch a kind of faces,
+  !> `(n_contact)`, mm2: over these faces, or over the others at a point without one; zero for a
+  !> node without contact faces.
+  pure function point_areas(model, x, kind) result(area)
     type(model_t), intent(in) :: model
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
+    integer, intent(in) :: kind
     real(wp), allocatable :: area(:)
+
+    logical :: touched(size(model%contact_face))
+
+    touched = model%touched(kind)
+    area = areas_over(model, x, touched)
+    if (any(.not. touched)) area = merge(area, areas_over(model, x, .not. touched), area > 0.0_wp)
+  end function point_areas
+
+  !> Return the areas of the contact points of this rank over some contact faces, `(n_contact)`,
+  !> mm2.
+  pure function areas_over(model, x, chosen) result(area)
+    type(model_t), intent(in) :: model
+    !> Positions of the nodes, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
+    logical, intent(in) :: chosen(:)
+    real(wp) :: area(model%n_contact)
 
     real(wp) :: of_face(size(model%face_point, 1))
     integer :: f, i, divisions
 
-    allocate (area(model%n_contact), source=0.0_wp)
+    area = 0.0_wp
     divisions = nint(sqrt(real(size(model%face_point, 1), wp))) - 1
     do f = 1, size(model%contact_face)
-      if (all(model%face_point(:, f) == 0)) cycle
+      if (.not. chosen(f) .or. all(model%face_point(:, f) == 0)) cycle
       of_face = areas_of_face(model, x, f, divisions)
       do i = 1, size(of_face)
         associate (point => model%face_point(i, f))
@@ -93,36 +111,41 @@ contains
         end associate
       end do
     end do
-  end function point_areas
+  end function areas_over
 
-  !> Return the areas over which the forces of the contact points of this rank act, `(n_contact)`,
-  !> mm2: a point without contact faces has the mean area.
-  function contact_areas(model, x) result(area)
+  !> Return the areas over which the forces of the contact points of this rank act by the tools that
+  !> touch a kind of faces, `(n_contact)`, mm2: a point without contact faces has the mean area.
+  function contact_areas(model, x, kind) result(area)
     type(model_t), intent(in) :: model
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
+    integer, intent(in) :: kind
     real(wp), allocatable :: area(:)
 
     real(wp) :: sums(2)
 
-    area = point_areas(model, x)
+    area = point_areas(model, x, kind)
     sums = [sum(area), real(count(area > 0.0_wp), wp)]
     call sum_over_ranks(2, sums)
     if (sums(2) < 1.0_wp) sums = [model%thickness**2, 1.0_wp]
     where (.not. area > 0.0_wp) area = sums(1)/sums(2)
   end function contact_areas
 
-  !> Return the areas of the contact faces that belong to their nodes, `(n_node)`, mm2.
-  pure function nodal_areas(model, x) result(area)
+  !> Return the areas of a kind of contact faces that belong to their nodes, `(n_node)`, mm2.
+  pure function nodal_areas(model, x, kind) result(area)
     type(model_t), intent(in) :: model
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
+    integer, intent(in) :: kind
     real(wp), allocatable :: area(:)
 
+    logical :: touched(size(model%contact_face))
     integer :: f
 
     allocate (area(model%n_node), source=0.0_wp)
+    touched = model%touched(kind)
     do f = 1, size(model%contact_face)
+      if (.not. touched(f)) cycle
       associate (node => model%face%node(:, model%contact_face(f)))
         if (size(node) > 4) then
           area(node) = area(node) + areas_of_face(model, x, f, 1)

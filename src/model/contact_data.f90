@@ -7,7 +7,11 @@ module dd3_model_contact_data
   use dd3_model_mesh_data, only : mesh_data_t
   implicit none
   private
-  public :: contact_data_t
+  public :: contact_data_t, side_faces, rim_faces, all_faces
+
+  !> Faces that a tool touches: those of the upper and lower side of the sheet, those of its rim, or
+  !> both.
+  integer, parameter :: side_faces = 1, rim_faces = 2, all_faces = 3
 
   !> Mesh data with contact points.
   type, extends(mesh_data_t) :: contact_data_t
@@ -28,14 +32,18 @@ module dd3_model_contact_data
     integer, allocatable :: n_candidate(:)
     !> Tools that a contact point can touch, `(n_tool, n_contact)`.
     logical, allocatable :: candidate(:, :)
-    !> Stiffness of the sheet through its thickness under each contact point, `(n_contact)`, N/mm.
-    real(wp), allocatable :: contact_stiffness(:)
-    !> Area of each contact point on the sheet without strain, `(n_contact)`, mm2.
-    real(wp), allocatable :: contact_area(:)
+    !> Faces that each tool touches, `(n_tool)`: `side_faces`, `rim_faces` or `all_faces`.
+    integer, allocatable :: touched_faces(:)
+    !> Stiffness of the sheet through its thickness under each contact point for the tools that
+    !> touch each kind of faces, `(n_contact, all_faces)`, N/mm.
+    real(wp), allocatable :: contact_stiffness(:, :)
+    !> Area of each contact point on the sheet without strain, likewise, mm2.
+    real(wp), allocatable :: contact_area(:, :)
     !> Node across the element from a node of a contact face, `(n_node)`; 0 for others.
     integer, allocatable :: opposite(:)
-    !> Faces on which a tool can touch the sheet: positions in `face`.
+    !> Faces on which a tool can touch the sheet: positions in `face`; whether they are of its rim.
     integer, allocatable :: contact_face(:)
+    logical, allocatable :: is_rim_face(:)
     !> Contact points on each of these faces, `(:, size(contact_face))`: the corners of its parts,
     !> row by row, or all its nodes if it has more than four; 0 for one of another rank.
     integer, allocatable :: face_point(:, :)
@@ -43,11 +51,21 @@ module dd3_model_contact_data
     !> tool is never pressed.
     integer, allocatable :: tool_row(:)
   contains
+    procedure :: touched
     procedure :: nodal_contact_forces
     procedure :: own_contact_forces
   end type contact_data_t
 
 contains
+
+  !> Return which contact faces are of a kind, `(size(contact_face))`.
+  pure function touched(self, kind)
+    class(contact_data_t), intent(in) :: self
+    integer, intent(in) :: kind
+    logical :: touched(size(self%contact_face))
+
+    touched = kind == all_faces .or. (self%is_rim_face .eqv. kind == rim_faces)
+  end function touched
 
   !> Return the forces on the nodes, `(3, n_node)`, N, that have the same work as those at the
   !> contact points of all ranks.

@@ -9,6 +9,7 @@ module dd3_model_contact_layer
   use dd3_base_ranks, only : largest_over_ranks, sum_over_ranks
   use dd3_contact_compliant, only : layer_t, new_layer, place_under_force
   use dd3_contact_operator, only : status_gap
+  use dd3_model_contact_data, only : side_faces
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : is_normal_held, phase_t
   use dd3_model_state, only : state_t
@@ -39,10 +40,12 @@ contains
     type(phase_t), intent(in) :: phase
     integer, intent(in) :: tool, c
 
-    layer = new_layer(phase%layer, model%thickness_at(model%contact_node(c)), &
-        model%contact_stiffness(c))
-    if (model%tool(tool)%compliance > 0.0_wp) layer%compliance = &
-        model%tool(tool)%compliance/model%contact_area(c)
+    associate (kind => model%touched_faces(tool))
+      layer = new_layer(phase%layer, model%thickness_at(model%contact_node(c)), &
+          model%contact_stiffness(c, kind))
+      if (model%tool(tool)%compliance > 0.0_wp) layer%compliance = &
+          model%tool(tool)%compliance/model%contact_area(c, kind)
+    end associate
   end function layer_at
 
   !> Return an upper bound of the deflection of a candidate's tool, mm: by the norm of the contact
@@ -56,7 +59,7 @@ contains
     associate (tool => state%contact%tool(c))
       if (tool == 0) return
       if (model%tool(tool)%compliance > 0.0_wp) deflection = model%tool(tool)%compliance &
-          *norm2(state%contact%lambda(:, c))/model%contact_area(c)
+          *norm2(state%contact%lambda(:, c))/model%contact_area(c, model%touched_faces(tool))
     end associate
   end function deflection_at
 
@@ -82,7 +85,8 @@ contains
     integer, intent(in) :: c
 
     contact_penalty = phase%penalty
-    if (phase%penalty <= 0.0_wp) contact_penalty = fraction*model%contact_stiffness(c)
+    if (phase%penalty <= 0.0_wp) contact_penalty = fraction &
+        *model%contact_stiffness(c, side_faces)
   end function contact_penalty
 
   !> Return the part of a layer's offset that is left at a progress of the phase.

@@ -7,6 +7,7 @@ module dd3_model_contact_points
   use dd3_sheet_surface_point, only : surface_point_t, crossing_point, edge_point, &
       face_point, node_point
   use dd3_model_contact_areas, only : point_areas
+  use dd3_model_contact_data, only : all_faces, rim_faces, side_faces
   use dd3_model_model, only : model_t
   use dd3_model_part, only : of_points
   implicit none
@@ -44,6 +45,7 @@ contains
 
     model%contact_face = pack([(f, f=1, model%face%n)], &
         [(any(all(model%member(:, model%face%node(:, f)), dim=2)), f=1, model%face%n)])
+    call set_touched_faces(model)
     most = model%n_node + max(4, (divisions - 1)*(divisions + 3))*size(model%contact_face)
     allocate (list%point(most))
     allocate (list%next(most), list%first(model%n_node), source=0)
@@ -82,12 +84,49 @@ contains
     do c = model%n_contact_fixed + 1, model%n_contact
       model%contact_point(c)%element = list%element(c)
     end do
-    call set_stiffness(model, point_areas(model, model%x0))
+    call set_stiffness(model)
     call set_elements(model)
     model%n_candidate = count(model%candidate, dim=2)
     model%part%n_point = model%n_contact
     call set_point_owners(model)
   end subroutine set_contact_points
+
+  !> Set which contact faces are of the rim of the sheet, those along its thickness, and the faces
+  !> that each tool touches.
+  pure subroutine set_touched_faces(model)
+    type(model_t), intent(inout) :: model
+
+    logical :: own(size(model%contact_face))
+    integer :: f, t
+
+    model%is_rim_face = [(is_along_thickness(model, model%contact_face(f)), &
+        f=1, size(model%contact_face))]
+    model%touched_faces = spread(side_faces, 1, model%n_tool)
+    do t = 1, model%n_tool
+      own = [(all(model%member(t, model%face%node(:, model%contact_face(f)))), &
+          f=1, size(model%contact_face))]
+      if (.not. any(own .and. model%is_rim_face)) cycle
+      model%touched_faces(t) = merge(rim_faces, all_faces, all(model%is_rim_face .or. .not. own))
+    end do
+  end subroutine set_touched_faces
+
+  !> Whether a face has both nodes of a pair through the thickness of its element.
+  pure logical function is_along_thickness(model, f)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: f
+
+    integer :: p
+
+    is_along_thickness = .false.
+    associate (node => model%face%node(:, f), element => model%face%element(f))
+      do p = 1, model%element%n_pair
+        associate (pair => model%connectivity(model%element%pair(:, p), element))
+          is_along_thickness = is_along_thickness .or. any(node == pair(1)) .and. &
+              any(node == pair(2))
+        end associate
+      end do
+    end associate
+  end function is_along_thickness
 
   !> Set the rank of each contact point: that of its node, whose row the mixed formulation needs, or
   !> for a point between nodes that of its element.
@@ -115,8 +154,8 @@ contains
     model%contact_point = model%contact_point(kept)
     model%contact_node = model%contact_node(kept)
     model%candidate = model%candidate(:, kept)
-    model%contact_stiffness = model%contact_stiffness(kept)
-    model%contact_area = model%contact_area(kept)
+    model%contact_stiffness = model%contact_stiffness(kept, :)
+    model%contact_area = model%contact_area(kept, :)
     model%candidate_of = number(model%candidate_of)
     do c = 1, size(model%face_point, 2)
       model%face_point(:, c) = number(model%face_point(:, c))
@@ -314,24 +353,28 @@ contains
   !> Set the area A of each point and the stiffness E A/t of the sheet through its thickness, with
   !> the thickness there, and Young's modulus of the element. A node that belongs to no face gets
   !> the mean area, and the modulus of an element that has it.
-  subroutine set_stiffness(model, area)
+  subroutine set_stiffness(model)
     type(model_t), intent(inout) :: model
-    !> `(n_contact)`; 0 for none.
-    real(wp), intent(in) :: area(:)
 
-    real(wp) :: mean
-    integer :: element(model%n_contact), at_node(model%n_node), c, e
+    real(wp) :: area(model%n_contact), mean
+    integer :: element(model%n_contact), at_node(model%n_node), c, e, kind
 
     do e = 1, model%n_element
       at_node(model%connectivity(:, e)) = e
     end do
     element = [(model%contact_point(c)%element, c=1, model%n_contact)]
     where (element == 0) element = at_node(model%contact_node(:model%n_contact))
-    mean = model%thickness**2
-    if (any(area > 0.0_wp)) mean = sum(area)/real(count(area > 0.0_wp), wp)
-    model%contact_area = merge(area, mean, area > 0.0_wp)
-    model%contact_stiffness = [(model%material(model%material_of(element(c)))%young &
-        *model%contact_area(c)/model%thickness_at(model%contact_node(c)), c=1, model%n_contact)]
+    model%contact_area = spread(spread(0.0_wp, 1, model%n_contact), 2, all_faces)
+    model%contact_stiffness = model%contact_area
+    do kind = side_faces, all_faces
+      area = point_areas(model, model%x0, kind)
+      mean = model%thickness**2
+      if (any(area > 0.0_wp)) mean = sum(area)/real(count(area > 0.0_wp), wp)
+      model%contact_area(:, kind) = merge(area, mean, area > 0.0_wp)
+      model%contact_stiffness(:, kind) = [(model%material(model%material_of(element(c)))%young &
+          *model%contact_area(c, kind)/model%thickness_at(model%contact_node(c)), &
+          c=1, model%n_contact)]
+    end do
   end subroutine set_stiffness
 
 end module dd3_model_contact_points

@@ -8,7 +8,8 @@ module dd3_model_contact_results
   use dd3_model_contact_layer, only : border_at, deflection_at
   use dd3_model_contact_areas, only : nodal_areas, point_areas
   use dd3_model_model, only : model_t
-  use dd3_model_outward_normals, only : nodal_normals, outward_normals
+  use dd3_model_contact_data, only : all_faces, side_faces
+  use dd3_model_outward_normals, only : nodal_normals, normals_for_tools, outward_normals
   use dd3_model_state, only : state_t
   use dd3_tools_closest, only : hint_t, hit_t
   use dd3_tools_placement, only : placement_t
@@ -85,23 +86,30 @@ contains
     end do
   end function candidate_hits
 
-  !> Return the pressures at the nodes, `(n_node)`, MPa, positive in compression; zero for a node
-  !> without contact faces.
+  !> Return the pressures at the nodes, `(n_node)`, MPa, positive in compression: the larger one
+  !> where tools touch the side and the rim of the sheet; zero for a node without contact faces.
   function contact_pressures(model, state) result(pressure)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     real(wp), allocatable :: pressure(:)
 
-    real(wp) :: area(model%n_node)
+    real(wp) :: area(model%n_node), force(3, model%n_node), lambda(3, model%n_contact)
+    integer :: c, kind
 
-    area = nodal_areas(model, state%x)
-    pressure = sum(nodal_normals(model, state%x) &
-        *model%nodal_contact_forces(state%x, state%contact%lambda, state%contact%place), dim=1)
-    where (area > 0.0_wp)
-      pressure = pressure/max(area, tiny(1.0_wp))
-    else where
-      pressure = 0.0_wp
-    end where
+    allocate (pressure(model%n_node), source=0.0_wp)
+    do kind = side_faces, all_faces
+      if (.not. any(model%touched_faces == kind)) cycle
+      lambda = 0.0_wp
+      do c = 1, model%n_contact
+        if (state%contact%tool(c) == 0) cycle
+        if (model%touched_faces(state%contact%tool(c)) == kind) lambda(:, c) = &
+            state%contact%lambda(:, c)
+      end do
+      force = model%nodal_contact_forces(state%x, lambda, state%contact%place)
+      area = nodal_areas(model, state%x, kind)
+      force(1, :) = sum(nodal_normals(model, state%x, kind)*force, dim=1)/max(area, tiny(1.0_wp))
+      where (area > 0.0_wp .and. abs(force(1, :)) > abs(pressure)) pressure = force(1, :)
+    end do
   end function contact_pressures
 
   !> Return the tool that each node touches, `(n_node)`; 0 for none.
@@ -125,19 +133,22 @@ contains
     type(tool_contact_t), allocatable :: contact(:)
 
     real(wp) :: area(model%n_contact), normal(3, model%n_contact)
-    integer :: c
+    integer :: c, kind
 
     allocate (contact(model%n_tool))
-    area = point_areas(model, state%x)
-    normal = outward_normals(model, state%x)
-    do c = 1, model%n_contact
-      if (state%contact%status(c) == status_gap .or. state%contact%tool(c) == 0) cycle
-      if (area(c) <= 0.0_wp) cycle
-      associate (tool => contact(state%contact%tool(c)))
-        tool%area = tool%area + area(c)
-        tool%pressure = max(tool%pressure, dot_product(normal(:, c), state%contact%lambda(:, &
-            c))/area(c))
-      end associate
+    do kind = side_faces, all_faces
+      if (.not. any(model%touched_faces == kind)) cycle
+      area = point_areas(model, state%x, kind)
+      normal = outward_normals(model, state%x, kind)
+      do c = 1, model%n_contact
+        if (state%contact%status(c) == status_gap .or. state%contact%tool(c) == 0) cycle
+        if (model%touched_faces(state%contact%tool(c)) /= kind .or. area(c) <= 0.0_wp) cycle
+        associate (tool => contact(state%contact%tool(c)))
+          tool%area = tool%area + area(c)
+          tool%pressure = max(tool%pressure, dot_product(normal(:, c), state%contact%lambda(:, &
+              c))/area(c))
+        end associate
+      end do
     end do
     call sum_over_ranks(size(contact), contact%area)
     call largest_over_ranks(size(contact), contact%pressure)
@@ -150,17 +161,19 @@ contains
     type(state_t), intent(in) :: state
     real(wp), allocatable :: deflection(:)
 
-    real(wp), allocatable :: normal(:, :)
+    real(wp) :: normal(3, model%n_contact, all_faces)
     integer :: c
 
     allocate (deflection(model%n_tool), source=0.0_wp)
     if (.not. any(model%tool%compliance > 0.0_wp)) return
-    normal = outward_normals(model, state%x)
+    normal = normals_for_tools(model, state%x)
     do c = 1, model%n_contact_fixed
       if (state%contact%status(c) == status_gap .or. state%contact%tool(c) == 0) cycle
-      associate (tool => state%contact%tool(c))
+      associate (tool => state%contact%tool(c), &
+          kind => model%touched_faces(state%contact%tool(c)))
         deflection(tool) = max(deflection(tool), model%tool(tool)%compliance &
-            *dot_product(normal(:, c), state%contact%lambda(:, c))/model%contact_area(c))
+            *dot_product(normal(:, c, kind), state%contact%lambda(:, c)) &
+            /model%contact_area(c, kind))
       end associate
     end do
     call largest_over_ranks(size(deflection), deflection)
@@ -176,12 +189,12 @@ contains
 
     type(hint_t) :: hint
     type(hit_t) :: hit
-    real(wp) :: outward(3, model%n_contact)
+    real(wp) :: outward(3, model%n_contact, all_faces)
     integer :: c, t
 
     associate (phase => model%phase(state%phase))
       allocate (gap(model%n_node), source=-phase%search_distance)
-      outward = outward_normals(model, state%x)
+      outward = normals_for_tools(model, state%x)
       do c = 1, model%n_contact_node
         do t = 1, model%n_tool
           if (.not. (model%candidate(t, c) .and. phase%active(t))) cycle
@@ -190,7 +203,7 @@ contains
               model%contact_point(c)%position(state%x), hint, &
               phase%search_distance, model%tolerance%committed_depth &
               + deflection_at(model, state, c) + state%tools%layer_offset(t), hit, &
-              outward(:, c), border_at(model, phase, c))
+              outward(:, c, model%touched_faces(t)), border_at(model, phase, c))
           if (hit%found) gap(model%contact_node(c)) = max(gap(model%contact_node(c)), -hit%distance)
         end do
       end do

@@ -41,9 +41,10 @@ contains
     integer :: f
 
     if (model%n_tool == 0) return
-    if (size(model%contact_face) == 0) return
+    if (all(model%is_rim_face)) return
     self%shortest = huge(1.0_wp)
     do f = 1, size(model%contact_face)
+      if (model%is_rim_face(f)) cycle
       associate (corner => model%face%corner(:, model%contact_face(f)))
         edge = model%x0(:, corner) - model%x0(:, cshift(corner, 1))
         length = norm2(edge, dim=1)

@@ -222,20 +222,25 @@ contains
           call digest%add(motion%node)
         end associate
       end do
-      call add_table(digest, phase%table)
-      call add_table(digest, phase%move_table)
-      call add_table(digest, phase%turn_table)
-      call add_table(digest, phase%press_table)
+      call digest%add([phase%mixed])
+      call digest%add([phase%layer])
+      call add_table(digest, "table", phase%table)
+      call add_table(digest, "move", phase%move_table)
+      call add_table(digest, "turn", phase%turn_table)
+      call add_table(digest, "press", phase%press_table)
     end associate
     phase_digest = digest%value()
   end function phase_digest
 
   !> Add a table, if there is one.
-  subroutine add_table(digest, table)
+  subroutine add_table(digest, name, table)
     type(digest_t), intent(inout) :: digest
+    character(len=*), intent(in) :: name
     real(wp), allocatable, intent(in) :: table(:, :)
 
-    if (allocated(table)) call digest%add(reshape(table, [size(table)]))
+    if (.not. allocated(table)) return
+    call digest%add(name)
+    call digest%add(reshape(table, [size(table)]))
   end subroutine add_table
 
   !> Add what a phase does with a tool, unless the tool is only held.

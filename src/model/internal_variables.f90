@@ -24,6 +24,8 @@ module dd3_model_internal_variables
     integer, allocatable :: first(:)
     !> Value at a stored zero, `(n_material)`, or in a material that lacks it.
     real(wp), allocatable :: offset(:)
+  contains
+    procedure :: is_known
   end type variable_t
 
 contains
@@ -58,6 +60,16 @@ contains
     end do
     variables = found(:n)
   end subroutine new_variables
+
+  !> Whether materials have the variable, or a constant value of it. Means at nodes on a weld line
+  !> leave out the elements of others.
+  pure elemental logical function is_known(self, material)
+    class(variable_t), intent(in) :: self
+    !> Number of the material.
+    integer, intent(in) :: material
+
+    is_known = self%first(material) > 0 .or. abs(self%offset(material)) > 0.0_wp
+  end function is_known
 
   !> Return the output components of a variable at a point: those of a tensor in global axes, 11 22
   !> 33 12 23 13, others as the law stores them; the constant if the material lacks it.

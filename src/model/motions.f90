@@ -18,7 +18,9 @@ module dd3_model_motions
 
   !> Motion of a node set in a phase.
   type :: motion_t
-    integer, allocatable :: node(:)
+    !> Nodes of the set, and those by which the section of a bent bar is known: without the nodes of
+    !> refinement, which would shift its centre.
+    integer, allocatable :: node(:), first(:)
     !> Whether the set is the end section of a bent bar.
     logical :: bends = .false.
     !> Point on the axis, or on the middle line at the fixed end of the bar, mm; unit vector along
@@ -39,9 +41,10 @@ module dd3_model_motions
 contains
 
   !> Make the motion of a set.
-  pure subroutine new_motion(self, node, x, bends, values, before)
+  pure subroutine new_motion(self, node, first, x, bends, values, before)
     type(motion_t), intent(out) :: self
-    integer, intent(in) :: node(:)
+    !> Nodes of the set, and those that were there before refinement.
+    integer, intent(in) :: node(:), first(:)
     !> Positions of the nodes without deformation, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
     logical, intent(in) :: bends
@@ -51,6 +54,7 @@ contains
     real(wp), intent(in) :: before
 
     self%node = node
+    self%first = first
     self%bends = bends
     self%point = values(1:3)
     self%axis = values(4:6)/norm2(values(4:6))
@@ -58,7 +62,7 @@ contains
     self%angle = pi/180.0_wp*values(7)
     if (.not. bends) return
     self%before = before
-    self%along = centre_of(x(:, node)) - self%point
+    self%along = centre_of(x(:, first)) - self%point
     self%along = self%along - dot_product(self%along, self%axis)*self%axis
     self%length = norm2(self%along)
     self%along = self%along/max(self%length, tiny(1.0_wp))
@@ -94,7 +98,7 @@ contains
     integer :: i
 
     start = 0.0_wp
-    if (self%bends) start = angle_of(self, x0(:, self%node), x_start(:, self%node))
+    if (self%bends) start = angle_of(self, x0(:, self%first), x_start(:, self%first))
     do i = 1, size(self%node)
       associate (node => self%node(i))
         if (self%places) then

@@ -3,23 +3,33 @@
 !> are opposite; this tells the side of the tool's surface on which a point belongs.
 module dd3_model_outward_normals
   use dd3_base_kinds, only : wp
+  use dd3_model_contact_data, only : all_faces, side_faces
   use dd3_model_model, only : model_t
   use dd3_model_sheet_faces, only : area_vector, sheet_faces_t
   implicit none
   private
-  public :: outward_normals, nodal_normals, mean_normals
+  public :: normals_for_tools, outward_normals, nodal_normals, mean_normals
 
 contains
 
-  !> Return the outward unit normals at the nodes, `(3, n_node)`: the mean over the contact faces at
-  !> a node, by area; zero for a node without contact faces.
-  pure function nodal_normals(model, x) result(normal)
+  !> Return the outward unit normals at the nodes for the tools that touch a kind of faces,
+  !> `(3, n_node)`: the mean over these faces at a node, by area, or over the others at a node
+  !> without one; zero for a node without contact faces.
+  pure function nodal_normals(model, x, kind) result(normal)
     type(model_t), intent(in) :: model
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
+    integer, intent(in) :: kind
     real(wp), allocatable :: normal(:, :)
 
-    normal = mean_normals(model%face, model%contact_face, x)
+    logical :: touched(size(model%contact_face))
+    real(wp), allocatable :: other(:, :)
+
+    touched = model%touched(kind)
+    normal = mean_normals(model%face, pack(model%contact_face, touched), x)
+    if (all(touched)) return
+    other = mean_normals(model%face, pack(model%contact_face, .not. touched), x)
+    where (spread(norm2(normal, dim=1) <= 0.0_wp, 1, 3)) normal = other
   end function nodal_normals
 
   !> Return the means of the outward unit normals of some faces at their nodes, `(3, n_node)`, by
@@ -48,18 +58,19 @@ contains
     end do
   end function mean_normals
 
-  !> Return the outward unit normals at the contact points, `(3, n_contact)`: between nodes, the
-  !> mean of those of the nodes.
-  pure function outward_normals(model, x) result(normal)
+  !> Return the outward unit normals at the contact points for the tools that touch a kind of faces,
+  !> `(3, n_contact)`: between nodes, the mean of those of the nodes.
+  pure function outward_normals(model, x, kind) result(normal)
     type(model_t), intent(in) :: model
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
+    integer, intent(in) :: kind
     real(wp), allocatable :: normal(:, :)
 
     real(wp) :: at_node(3, model%n_node)
     integer :: c
 
-    at_node = nodal_normals(model, x)
+    at_node = nodal_normals(model, x, kind)
     allocate (normal(3, model%n_contact))
     do c = 1, model%n_contact
       associate (point => model%contact_point(c))
@@ -68,6 +79,22 @@ contains
       end associate
     end do
   end function outward_normals
+
+  !> Return the outward unit normals at the contact points for the tools that touch each kind of
+  !> faces, `(3, n_contact, all_faces)`; zero for a kind that no tool touches.
+  pure function normals_for_tools(model, x) result(normal)
+    type(model_t), intent(in) :: model
+    !> Positions of the nodes, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
+    real(wp), allocatable :: normal(:, :, :)
+
+    integer :: kind
+
+    allocate (normal(3, model%n_contact, all_faces), source=0.0_wp)
+    do kind = side_faces, all_faces
+      if (any(model%touched_faces == kind)) normal(:, :, kind) = outward_normals(model, x, kind)
+    end do
+  end function normals_for_tools
 
   !> Return a vector divided by its length; zero for zero.
   pure function unit(vector)

@@ -98,9 +98,9 @@ contains
           if (corner(k) == 0) cycle
           if (before%tool(corner(k)) /= to%tool(c)) cycle
           stress = stress + weight(k)*before%lambda(:, corner(k)) &
-              /old_model%contact_stiffness(corner(k))
+              /old_model%contact_stiffness(corner(k), model%touched_faces(to%tool(c)))
         end do
-        to%lambda(:, c) = model%contact_stiffness(c)*stress
+        to%lambda(:, c) = model%contact_stiffness(c, model%touched_faces(to%tool(c)))*stress
       end associate
     end subroutine carry_point
 

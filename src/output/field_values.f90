@@ -62,19 +62,24 @@ contains
 
     real(wp), allocatable :: value(:, :)
     integer, allocatable :: sharing(:)
+    logical :: counts(model%n_element)
     real(wp) :: weight, whole
     integer :: n, e, p, a, node
 
     call gather_points(field, model, state, value)
     whole = sum(model%element%weight)
     n = field%components
-    call count_sharing(model, sharing)
+    counts = .true.
+    if (field%variable > 0) counts = &
+        model%internal_variable(field%variable)%is_known(model%material_of)
+    call count_sharing(model, counts, sharing)
     do e = 1, model%n_element
       cell(:, e) = 0.0_wp
       do p = 1, model%element%n_point
         associate (at_point => value(n*(p - 1) + 1:n*p, e))
           weight = model%element%weight(p)/whole
           cell(:, e) = cell(:, e) + weight*at_point
+          if (.not. counts(e)) cycle
           do a = 1, model%element%n_node
             node = model%connectivity(a, e)
             weight = model%element%extrapolation(a, p)/real(sharing(node), wp)
@@ -131,8 +136,10 @@ contains
   end subroutine give_values
 
   !> Count the elements that share each node.
-  subroutine count_sharing(model, sharing)
+  subroutine count_sharing(model, counts, sharing)
     type(model_t), intent(in) :: model
+    !> Elements that count, `(n_element)`.
+    logical, intent(in) :: counts(:)
     !> `(n_node)`.
     integer, allocatable, intent(out) :: sharing(:)
 
@@ -140,6 +147,7 @@ contains
 
     allocate (sharing(model%n_node), source=0)
     do e = 1, model%n_element
+      if (.not. counts(e)) cycle
       do a = 1, model%element%n_node
         sharing(model%connectivity(a, e)) = sharing(model%connectivity(a, e)) + 1
       end do

@@ -333,7 +333,7 @@ contains
 
     hit = candidate_hits(model, tool, state%placement(tool), state%x, &
         model%tolerance%tool_search, model%tolerance%committed_depth, &
-        outward_normals(model, state%x))
+        outward_normals(model, state%x, model%touched_faces(tool)))
     largest = [-huge(1.0_wp), -1.0_wp]
     associate (phase => model%phase(state%phase))
       do c = 1, model%n_contact

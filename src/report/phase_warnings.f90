@@ -11,7 +11,7 @@ module dd3_report_phase_warnings
   use dd3_contact_operator, only : status_gap
   use dd3_linalg_tensor, only : identity
   use dd3_model_contact_layer, only : deflection_at, layer_at
-  use dd3_model_contact_results, only : tool_deflections
+  use dd3_model_contact_results, only : tool_contact_t, tool_contacts, tool_deflections
   use dd3_model_energy, only : elastic_energy, energy_error
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : phase_t
@@ -376,15 +376,18 @@ contains
     type(state_t), intent(in) :: state
     character(len=:), allocatable :: text
 
+    type(tool_contact_t) :: contact(model%n_tool)
     real(wp) :: deflection(model%n_tool)
     integer :: tool
 
     text = ""
     deflection = tool_deflections(model, state)
+    if (.not. any(deflection > 0.0_wp)) return
+    contact = tool_contacts(model, state)
     do tool = 1, model%n_tool
       if (deflection(tool) <= 0.0_wp) cycle
       text = text//", '"//model%tool(tool)%name//"' "//to_text(deflection(tool), 3)// &
-          " mm at "//to_text(deflection(tool)/model%tool(tool)%compliance, 3)//" MPa"
+          " mm, pressure up to "//to_text(contact(tool)%pressure, 3)//" MPa"
     end do
     if (len(text) > 0) text = "phase '"//model%phase(state%phase)%name// &
         "': largest deflection of elastic tools"//text(2:)

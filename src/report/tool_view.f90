@@ -7,6 +7,7 @@
 module dd3_report_tool_view
   use dd3_base_kinds, only : wp
   use dd3_linalg_tensor, only : cross
+  use dd3_model_contact_data, only : side_faces
   use dd3_model_contact_layer, only : deflection_at
   use dd3_model_model, only : model_t
   use dd3_model_outward_normals, only : nodal_normals
@@ -61,7 +62,7 @@ contains
 
     self%direction = direction
     self%acts = acts
-    self%normal = nodal_normals(model, state%x)
+    self%normal = nodal_normals(model, state%x, side_faces)
     call set_bounds(self, model, state)
   end subroutine new_path
 

@@ -29,7 +29,7 @@ contains
 
     type(motion_t), allocatable :: motion(:)
     logical :: displaced(3, mesh%n_node)
-    integer, allocatable :: node(:)
+    integer, allocatable :: node(:), first(:)
     integer :: k, n
 
     displaced = .false.
@@ -55,8 +55,10 @@ contains
       end do
       do k = 1, size(spec%motion)
         node = mesh%nodes_of(spec%motion(k)%set)
-        call new_motion(motion(k), node, placed(mesh%placement, mesh%x), spec%motion(k)%bends, &
-            spec%motion(k)%value, bend_before(case, i, spec%motion(k)%set))
+        first = pack(node, node <= mesh%n_first_node .or. mesh%mesh_number == 0)
+        if (size(first) == 0) first = node
+        call new_motion(motion(k), node, first, placed(mesh%placement, mesh%x), &
+            spec%motion(k)%bends, spec%motion(k)%value, bend_before(case, i, spec%motion(k)%set))
         call mark_directions(displaced, node, motion(k)%prescribes)
       end do
       call move_alloc(motion, phase%motion)

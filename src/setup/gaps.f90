@@ -30,7 +30,7 @@ contains
       do k = 1, size(case%phase(i)%gap)
         associate (spec => case%phase(i)%gap(k))
           gap = spec%value
-          if (spec%in_thicknesses) gap = gap*model%thickness
+          if (spec%in_thicknesses) gap = gap*model%largest_thickness()
           before = errors%count
           call check_place(model, i, spec%tool, "gap", spec%at, errors)
           call check_place(model, i, spec%other, "gap", spec%at, errors)

@@ -47,7 +47,8 @@ contains
     real(wp), intent(in) :: x(:, :)
     real(wp) :: side(3)
 
-    side = sum(outward_normals(model, x), dim=2, mask=spread(model%candidate(tool, :), 1, 3)) &
+    side = sum(outward_normals(model, x, model%touched_faces(tool)), dim=2, &
+        mask=spread(model%candidate(tool, :), 1, 3)) &
         /real(max(1, count(model%candidate(tool, :))), wp)
     associate (surface => model%tool(tool)%surface)
       if (norm2(side) < no_side) side = model%tool(tool)%position &

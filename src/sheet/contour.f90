@@ -6,7 +6,7 @@
 module dd3_sheet_contour
   use dd3_base_kinds, only : wp
   use dd3_sheet_cut_function, only : cut_function_t
-  use dd3_sheet_location, only : bilinear, natural_coordinates
+  use dd3_sheet_location, only : bilinear, inside, natural_coordinates
   use dd3_mesh_plane_curve, only : loop_t
   implicit none
   private
@@ -14,7 +14,7 @@ module dd3_sheet_contour
 
   !> Parts of a line within a quadrilateral.
   integer, parameter :: n_part = 6
-  !> Distance of vertices that coincide, over the length of the line.
+  !> Distance of corners that coincide, over the length of the line.
   real(wp), parameter :: coincident = 1.0e-9_wp
 
 contains
@@ -102,11 +102,10 @@ contains
     end do
     ! A corner on an edge is found in both quadrilaterals.
     do i = 1, n
-      k = mod(i - 2 + n, n) + 1
-      do while (corner(i) .and. k /= i)
-        if (norm2(line%point(:, k) - line%point(:, i)) > coincident*line%length()) exit
-        if (corner(k) .and. (k < i .or. line%closed)) corner(i) = .false.
-        k = mod(k - 2 + n, n) + 1
+      if (.not. corner(i)) cycle
+      do k = 1, i - 1
+        if (norm2(line%point(:, k) - line%point(:, i)) > coincident*line%length()) cycle
+        corner(i) = corner(i) .and. .not. corner(k)
       end do
     end do
     line%corner = pack(line%arc(:n), corner(:n))
@@ -160,15 +159,17 @@ contains
     real(wp), intent(inout) :: part(2, 0:n_part)
     integer, intent(inout) :: kink
 
-    real(wp) :: natural(2)
+    real(wp) :: natural(2), margin(2)
     logical :: found
     integer :: i
 
     associate (vertex => cut%plane(:, cut%grid%corner(:, quad)))
-      if (any(corner < minval(vertex, dim=2)) .or. any(corner > maxval(vertex, dim=2))) return
+      margin = (inside - 1.0_wp)*(maxval(vertex, dim=2) - minval(vertex, dim=2))
+      if (any(corner < minval(vertex, dim=2) - margin) .or. &
+          any(corner > maxval(vertex, dim=2) + margin)) return
       call natural_coordinates(vertex, corner, natural, found)
     end associate
-    if (.not. found .or. any(abs(natural) > 1.0_wp)) return
+    if (.not. found .or. any(abs(natural) > inside)) return
     kink = minloc([(norm2(part(:, i) - natural), i=1, n_part - 1)], dim=1)
     part(:, kink) = natural
     ! The other parts lie on straight lines beside it again.

@@ -6,7 +6,7 @@ module dd3_sheet_location
   use dd3_sheet_grid, only : grid_t
   implicit none
   private
-  public :: place_t, locate, bilinear, natural_coordinates, corner_sign
+  public :: place_t, locate, bilinear, natural_coordinates, corner_sign, inside
 
   !> Natural coordinates of the corners.
   real(wp), parameter :: corner_sign(2, 4) = reshape([-1.0_wp, -1.0_wp, 1.0_wp, -1.0_wp, &

@@ -309,8 +309,9 @@ contains
           do p = 1, element%n_point
             place = locate(grid, cut%plane, matmul(cut%patch%plane(:, corner(:, q)), &
                 bilinear(element%point(:2, p))), start)
-            call transfer_point(sheet, grid, cut%plane, element, k, p, place, new%stress(:, p, e), &
-                new%internal_variables(:, p, e), new%orientation(:, :, p, e))
+            call transfer_point(sheet, grid, cut%plane, element, k, p, place, &
+                new%mesh%material(e), new%stress(:, p, e), new%internal_variables(:, p, e), &
+                new%orientation(:, :, p, e))
           end do
         end do
       end do

@@ -44,7 +44,7 @@ contains
     call balance(grid, quad_levels(sheet%mesh, grid), divided)
     call new_division(division, sheet%mesh, grid, divided)
     call new_divided_mesh(sheet%mesh, grid, division, refined%mesh, node, origin)
-    call find_sources(origin, grid, sheet%mesh%x, element, divided)
+    call find_sources(origin, grid, sheet%mesh, element, divided)
     refined%element = sheet%element
     refined%thickness_points = sheet%thickness_points
     refined%material = sheet%material

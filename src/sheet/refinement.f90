@@ -9,6 +9,7 @@ module dd3_sheet_refinement
   use dd3_base_kinds, only : wp
   use dd3_element_table, only : element_t
   use dd3_linalg_tensor, only : cross
+  use dd3_mesh_mesh, only : mesh_t
   use dd3_sheet_grid, only : grid_t
   use dd3_sheet_location, only : bilinear, corner_sign
   use dd3_sheet_transfer, only : axes_at, bounded_mean, linear_weights, mean_axes, quads_around, &
@@ -158,11 +159,11 @@ contains
   end function donors
 
   !> Find from which points the quarters of divided quadrilaterals take their values.
-  pure subroutine find_sources(self, grid, x, element, divided)
+  pure subroutine find_sources(self, grid, mesh, element, divided)
     type(refinement_t), intent(inout) :: self
     type(grid_t), intent(in) :: grid
-    !> Initial positions of the nodes, `(3, n_node)`, mm.
-    real(wp), intent(in) :: x(:, :)
+    !> Before the division.
+    type(mesh_t), intent(in) :: mesh
     type(element_t), intent(in) :: element
     !> Whether each quadrilateral is divided, `(n_quad)`.
     logical, intent(in) :: divided(:)
@@ -181,7 +182,7 @@ contains
       if (.not. divided(q)) cycle
       n = n + 1
       self%source_of(grid%element(:, q)) = n
-      call new_source(self%source(n), grid, x, natural, q)
+      call new_source(self%source(n), grid, mesh, natural, q)
     end do
   end subroutine find_sources
 
@@ -212,11 +213,12 @@ contains
     end do
   end function point_columns
 
-  !> Find from which points the quarters of a quadrilateral take their values.
-  pure subroutine new_source(self, grid, x, natural, quad)
+  !> Find from which points the quarters of a quadrilateral take their values: those around them in
+  !> elements of the same materials, whose internal variables have the same meaning.
+  pure subroutine new_source(self, grid, mesh, natural, quad)
     type(source_t), intent(out) :: self
     type(grid_t), intent(in) :: grid
-    real(wp), intent(in) :: x(:, :)
+    type(mesh_t), intent(in) :: mesh
     !> Natural coordinates of the columns of integration points, `(2, n_column)`.
     real(wp), intent(in) :: natural(:, :)
     integer, intent(in) :: quad
@@ -227,7 +229,11 @@ contains
     integer :: i, j, n, quadrant
 
     around = quads_around(grid, quad)
-    plane = in_tangent_plane(grid, x, around)
+    associate (material => mesh%material)
+      around = pack(around, [(all(material(grid%element(:, around(i))) == &
+          material(grid%element(:, quad))), i=1, size(around))])
+    end associate
+    plane = in_tangent_plane(grid, mesh%x, around)
     n = size(natural, 2)
     allocate (donor(2, n*size(around)), self%weight(n*size(around), n, 4))
     self%element = grid%element(:, around)

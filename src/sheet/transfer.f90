@@ -2,8 +2,9 @@
 !> Transfer of the state to the integration points of elements that a cut has moved or made, or into
 !> which larger ones were divided: through the thickness each point takes the values of the points
 !> of its own level, so that the problem is one in the mid-surface. There a linear function is
-!> fitted to the points of the old element at this place and of those around it, weighted by their
-!> distance; a linear field is carried exactly, and no value leaves the range of those around it.
+!> fitted to the points of the old element at this place and of those of the same material around
+!> it, weighted by their distance; a linear field is carried exactly, and no value leaves the range
+!> of those around it.
 !>
 !> Stress and internal variables are carried in the material axes, which turn with the sheet; the
 !> axes themselves are carried by their components and made orthonormal again.
@@ -30,8 +31,8 @@ module dd3_sheet_transfer
 contains
 
   !> Set the state of one integration point from the old sheet.
-  pure subroutine transfer_point(old, grid, plane, element, layer, level, place, stress, &
-      internal_variables, orientation)
+  pure subroutine transfer_point(old, grid, plane, element, layer, level, place, material, &
+      stress, internal_variables, orientation)
     !> Sheet before the cut, its grid and the positions of its columns in the plane.
     type(sheet_t), intent(in) :: old
     type(grid_t), intent(in) :: grid
@@ -41,12 +42,17 @@ contains
     integer, intent(in) :: layer, level
     !> Place on the old grid.
     type(place_t), intent(in) :: place
+    !> Material of the element.
+    integer, intent(in) :: material
     real(wp), intent(out) :: stress(:), internal_variables(:), orientation(:, :)
 
     real(wp), allocatable :: weight(:)
-    integer, allocatable :: donor(:, :)
+    integer, allocatable :: around(:), donor(:, :)
 
-    call find_weights(grid, plane, element, layer, level, place, donor, weight)
+    around = quads_around(grid, place%quad)
+    around = pack(around, old%mesh%material(grid%element(layer, around)) == material)
+    if (size(around) == 0) around = [place%quad]
+    call find_weights(grid, plane, element, layer, level, place, around, donor, weight)
     stress = bounded_mean(values_at(old%stress, donor), weight)
     internal_variables = bounded_mean(values_at(old%internal_variables, donor), weight)
     orientation = mean_axes(axes_at(old%orientation, donor), weight)
@@ -118,23 +124,24 @@ contains
   end function mean_axes
 
   !> Find the integration points around a place on the grid, and their weights.
-  pure subroutine find_weights(grid, plane, element, layer, level, place, donor, weight)
+  pure subroutine find_weights(grid, plane, element, layer, level, place, around, donor, weight)
     type(grid_t), intent(in) :: grid
     real(wp), intent(in) :: plane(:, :)
     type(element_t), intent(in) :: element
     integer, intent(in) :: layer, level
     type(place_t), intent(in) :: place
+    !> Quadrilaterals whose points are taken.
+    integer, intent(in) :: around(:)
     !> Point and element of each, `(2, n)`.
     integer, allocatable, intent(out) :: donor(:, :)
     real(wp), allocatable, intent(out) :: weight(:)
 
-    integer, allocatable :: around(:), same_level(:)
+    integer, allocatable :: same_level(:)
     real(wp), allocatable :: offset(:, :)
     real(wp) :: point(2)
     integer :: i, k, p
 
     point = matmul(plane(:, grid%corner(:, place%quad)), bilinear(place%natural))
-    around = quads_around(grid, place%quad)
     same_level = pack([(p, p=1, element%n_point)], &
         abs(element%point(3, :) - element%point(3, level)) < 1.0e-9_wp)
     allocate (donor(2, size(around)*size(same_level)), offset(2, size(around)*size(same_level)))

@@ -7,9 +7,10 @@ module dd3_system_contact
   use dd3_contact_operator, only : round_off, status_gap
   use dd3_model_contact_layer, only : contact_penalty
   use dd3_model_contact_areas, only : contact_areas
+  use dd3_model_contact_data, only : all_faces
   use dd3_model_contact_strain, only : strains_below
   use dd3_model_model, only : model_t
-  use dd3_model_outward_normals, only : outward_normals
+  use dd3_model_outward_normals, only : normals_for_tools
   use dd3_model_state, only : state_t
   use dd3_system_compliant_contact, only : compliant_contact_t
   use dd3_system_formulation, only : formulation_t
@@ -83,13 +84,14 @@ contains
     type(state_t), intent(in) :: committed
 
     logical :: touching(model%n_tool)
-    integer :: c, tool
+    integer :: c, kind, tool
 
     call choose(system%formulation, model%phase(committed%phase)%mixed)
     associate (contact => system%contact, phase => model%phase(committed%phase))
-      contact%outward = outward_normals(model, committed%x)
+      contact%outward = normals_for_tools(model, committed%x)
       if (any_friction(model, .false.)) then
-        contact%sliding%area = contact_areas(model, committed%x)
+        contact%area = reshape([(contact_areas(model, committed%x, kind), kind=1, all_faces)], &
+            [model%n_contact, all_faces])
         contact%sliding%strain = strains_below(model, committed)
         contact%sliding%speed = committed%contact%slip_speed
         contact%sliding%per_slip = 0.0_wp

@@ -117,17 +117,28 @@ contains
         moved = relative_displacement(committed%placement(t), placement, &
             self%committed_x(:, c), position)
         call find_on_tool(model%tool(t), placement, position, hint(t), self%search_distance, &
-            depth + committed%tools%layer_offset(t) + norm2(moved), hit, self%outward(:, c), border)
+            depth + committed%tools%layer_offset(t) + norm2(moved), hit, &
+            self%outward(:, c, model%touched_faces(t)), border)
         if (.not. hit%found) cycle
         distance = hit%distance
         if (t == trial%contact%tool(c)) distance = distance - model%tolerance%hysteresis
         if (distance >= best) cycle
         best = distance
-        self%tool(c) = t
+        call take_tool(self, model, c, t)
         nearest = hit
       end do
     end associate
   end subroutine find_nearest_tool
+
+  !> Set the tool of a candidate, and the area on which it acts there.
+  subroutine take_tool(self, model, c, tool)
+    type(contact_work_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: c, tool
+
+    self%tool(c) = tool
+    if (allocated(self%area)) self%sliding(c)%area = self%area(c, model%touched_faces(tool))
+  end subroutine take_tool
 
   !> Find the border that an edge of the mesh is nearest to, among those that it crosses.
   subroutine find_nearest_border(self, model, state, c, nearest)
@@ -147,10 +158,11 @@ contains
         do t = 1, model%n_tool
           if (.not. (model%candidate(t, c) .and. phase%active(t))) cycle
           call find_crossing_on_tool(model%tool(t), state%placement(t), state%x(:, node(:2)), &
-              self%outward(:, c), border_at(model, phase, c), self%search_distance, crossing)
+              self%outward(:, c, model%touched_faces(t)), border_at(model, phase, c), &
+              self%search_distance, crossing)
           if (.not. crossing%found .or. crossing%distance >= nearest%distance) cycle
           nearest = crossing
-          self%tool(c) = t
+          call take_tool(self, model, c, t)
         end do
       end if
     end associate

@@ -46,9 +46,11 @@ module dd3_system_contact_work
     !> Positions of the points in the committed state, and the part of its turn in the displacement
     !> of the tool's point there per progress of the phase, `(3, n_contact)`, mm.
     real(wp), allocatable :: committed_x(:, :), turning(:, :)
-    !> Outward normals of the sheet in the committed state, `(3, n_contact)`.
-    real(wp), allocatable :: outward(:, :)
-    !> What friction depends on, in the committed state, `(n_contact)`.
+    !> Outward normals of the sheet in the committed state for the tools that touch each kind of
+    !> faces, `(3, n_contact, all_faces)`, and its areas, `(n_contact, all_faces)`, mm2; not
+    !> allocated if no friction depends on them.
+    real(wp), allocatable :: outward(:, :, :), area(:, :)
+    !> What friction depends on, in the committed state but for the area, `(n_contact)`.
     type(sliding_t), allocatable :: sliding(:)
     !> Distance up to which the tools are looked for, mm.
     real(wp) :: search_distance = 0.0_wp
@@ -73,8 +75,7 @@ contains
     allocate (self%near(n_contact), source=.false.)
     allocate (self%sliding(n_contact))
     allocate (self%d(3, 3, n_contact), self%e(3, 3, n_contact), source=0.0_wp)
-    allocate (self%outward(3, n_contact), self%committed_x(3, n_contact), &
-        self%turning(3, n_contact), source=0.0_wp)
+    allocate (self%committed_x(3, n_contact), self%turning(3, n_contact), source=0.0_wp)
   end subroutine new_contact_work
 
   !> Set a candidate without a tool near it.

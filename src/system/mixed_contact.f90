@@ -17,6 +17,7 @@ module dd3_system_mixed_contact
   use dd3_linalg_matrix, only : block_matrix_t, copy_blocks
   use dd3_linalg_partition, only : column_squares
   use dd3_linalg_tensor, only : identity
+  use dd3_model_contact_data, only : side_faces
   use dd3_model_contact_layer, only : contact_penalty
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : is_normal_held, is_slip_prescribed, phase_t
@@ -133,7 +134,7 @@ contains
     associate (node => model%contact_node(c))
       if (is_normal_held(phase, node, normal)) penalty = held_factor*penalty
       if (is_slip_prescribed(phase, node, normal, slip)) penalty(2) = &
-          max(penalty(2), model%contact_stiffness(c))
+          max(penalty(2), model%contact_stiffness(c, side_faces))
     end associate
   end function candidate_penalty
 
