@@ -347,9 +347,7 @@ contains
 
     do i = 1, size(case%history)
       do j = 1, size(case%tool)
-        associate (name => case%history(i)%name, tool => trim(case%tool(j)%name))
-          if (name /= tool .and. name /= tool//"_tilt") cycle
-        end associate
+        if (all(case%history(i)%name /= case%tool(j)%name//[character(len=5) :: "", "_tilt"])) cycle
         call errors%push_input(case%history(i)%source%named, "'"// &
             case%history(i)%source%called()//"' names columns of tool '"// &
             case%tool(j)%source%called()//"' in history.csv", "another name", code="E123")

@@ -71,7 +71,8 @@ contains
   end subroutine add_tool_warnings
 
   !> Return a warning if a tool was moved or pressed in the phase and has never touched the sheet,
-  !> unless it stands before the sheet, by less than its thickness, and the next phase presses it.
+  !> unless it stands before the sheet, by less than its thickness, in a given gap to another tool or
+  !> for the next phase, which presses it.
   function contact_warning(model, state, tool) result(text)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -80,6 +81,7 @@ contains
 
     type(hit_t), allocatable :: hit(:)
     type(nearest_t) :: nearest
+    integer :: k
 
     text = ""
     associate (phase => model%phase(state%phase))
@@ -90,9 +92,11 @@ contains
       hit = candidate_hits(model, tool, state%placement(tool), state%x, distance, distance)
     end associate
     nearest = nearest_candidate(model, hit%distance, abs(hit%distance), hit%found)
-    if (nearest%node > 0 .and. state%phase < size(model%phase)) then
-      if (model%phase(state%phase + 1)%pressed(tool) .and. nearest%distance >= 0.0_wp .and. &
-          nearest%distance < model%thickness) return
+    if (nearest%node > 0 .and. nearest%distance >= 0.0_wp .and. &
+        nearest%distance < model%thickness) then
+      if (model%phase(state%phase)%gap_other(tool) > 0) return
+      if (any([(model%phase(k)%pressed(tool), &
+          k=state%phase + 1, min(state%phase + 1, size(model%phase)))])) return
     end if
     text = "tool '"//model%tool(tool)%name//"' moved without touching the sheet; at its end "
     if (nearest%node > 0) then

@@ -80,6 +80,7 @@ contains
     call new_drawbeads(model, case, errors)
     if (errors%count > 0) return
     call new_phases(model, case, mesh, errors)
+    if (allocated(mesh%bound)) call check_bound(mesh, case, errors)
     call free_bound_nodes(model)
     call check_loads(model, case, errors)
     call set_history(model, case, mesh)
@@ -223,6 +224,46 @@ contains
       call mark_directions(model%fixed, mesh%nodes_of(case%boundary(i)%set), case%boundary(i)%fix)
     end do
   end subroutine set_fixed
+
+  !> Report supports and displacements of sets that have bound nodes only, and act nowhere.
+  subroutine check_bound(mesh, case, errors)
+    type(mesh_t), intent(in) :: mesh
+    type(case_t), intent(in) :: case
+    !> Errors found are added.
+    type(error_list_t), intent(inout) :: errors
+
+    integer :: i, k
+
+    do i = 1, size(case%boundary)
+      call check_set(case%boundary(i)%set, case%boundary(i)%source%at("set"))
+    end do
+    do i = 1, size(case%phase)
+      do k = 1, size(case%phase(i)%displace)
+        call check_set(case%phase(i)%displace(k)%set, case%phase(i)%displace(k)%at)
+      end do
+      do k = 1, size(case%phase(i)%motion)
+        call check_set(case%phase(i)%motion(k)%set, case%phase(i)%motion(k)%at)
+      end do
+    end do
+
+  contains
+
+    subroutine check_set(name, at)
+      character(len=*), intent(in) :: name
+      type(location_t), intent(in) :: at
+
+      integer, allocatable :: node(:)
+      integer :: j
+
+      node = mesh%nodes_of(name)
+      if (size(node) == 0) return
+      if (.not. all([(any(mesh%bound(1, :) == node(j)), j=1, size(node))])) return
+      call errors%push_input(at, "the set '"//name//"' has only nodes in the middle of edges "// &
+          "of larger elements, which follow the ends of the edges and cannot be held", &
+          "nodes at corners of all their elements", code="E148")
+    end subroutine check_set
+
+  end subroutine check_bound
 
   !> Leave the bound nodes, also those within supported areas, to their parents.
   pure subroutine free_bound_nodes(model)

@@ -2,7 +2,7 @@
 !> The sheet at the start of a job: that of the blank, of the mesh file or of another run, and its
 !> cuts.
 module dd3_setup_sheet
-  use dd3_base_error, only : error_list_t, location_t
+  use dd3_base_error, only : error_list_t
   use dd3_base_kinds, only : wp
   use dd3_base_text, only : same_name
   use dd3_input_case, only : case_t, material_spec_t
@@ -91,48 +91,7 @@ contains
         call errors%push_input(case%adaptive%at, "the sizes of the elements beside nodes in "// &
         "the middle of edges contradict each other: they do not come from halving", &
         "adaptive = 0", code="E148")
-    if (allocated(mesh%bound)) call check_supports(mesh, case, errors)
   end subroutine check_refinement
-
-  !> Report supports and displacements of sets that have bound nodes only, and act nowhere.
-  subroutine check_supports(mesh, case, errors)
-    type(mesh_t), intent(in) :: mesh
-    type(case_t), intent(in) :: case
-    !> Errors found are added.
-    type(error_list_t), intent(inout) :: errors
-
-    integer :: i, k
-
-    do i = 1, size(case%boundary)
-      call check_set(case%boundary(i)%set, case%boundary(i)%source%at("set"))
-    end do
-    do i = 1, size(case%phase)
-      do k = 1, size(case%phase(i)%displace)
-        call check_set(case%phase(i)%displace(k)%set, case%phase(i)%displace(k)%at)
-      end do
-      do k = 1, size(case%phase(i)%motion)
-        call check_set(case%phase(i)%motion(k)%set, case%phase(i)%motion(k)%at)
-      end do
-    end do
-
-  contains
-
-    subroutine check_set(name, at)
-      character(len=*), intent(in) :: name
-      type(location_t), intent(in) :: at
-
-      integer, allocatable :: node(:)
-      integer :: j
-
-      node = mesh%nodes_of(name)
-      if (size(node) == 0) return
-      if (.not. all([(any(mesh%bound(1, :) == node(j)), j=1, size(node))])) return
-      call errors%push_input(at, "the set '"//name//"' has only nodes in the middle of edges "// &
-          "of larger elements, which follow the ends of the edges and cannot be held", &
-          "nodes at corners of all their elements", code="E148")
-    end subroutine check_set
-
-  end subroutine check_supports
 
   !> Find the levels of a mesh with bound nodes that a file gives without levels.
   pure subroutine set_levels(mesh)
