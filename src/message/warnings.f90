@@ -277,7 +277,7 @@ contains
           "None."), &
       row("N110", "deflection of elastic tools", &
           "Largest deflection of a tool with `compliance` at the end of the phase, "// &
-          "and the contact pressure there.", "None."), &
+          "and its largest contact pressure.", "None."), &
       row("N111", "largest damage and ratio to the forming limit", &
           "At the end of the run, or where it stops, of materials with `fracture` or "// &
           "`forming_limit`; 1 is the limit.", "None.")]
