@@ -293,8 +293,6 @@ def test_merge_too_large(tmp_path):
 
 def test_names_of_sets(tmp_path):
     """Number the later ones of sets whose names become the same."""
-    assert meshes.set_names(["A b", "a_b_2", "a_b", "A B"]) == {"A b": "a_b_3", "a_b_2": "a_b_2", "a_b": "a_b",
-                                                                "A B": "a_b_4"}
     geometry = GEOMETRY.replace("at y 0", "Bottom face").replace("at x 0", "bottom_FACE")
     (tmp_path / "disc.geo").write_text(geometry)
     said = call("mesh", "disc.geo", "disc.inp")
@@ -303,3 +301,5 @@ def test_names_of_sets(tmp_path):
     mesh = meshes.read_inp(tmp_path / "disc.inp", None)
     for name, axis in (("bottom_face", 1), ("bottom_face_2", 0)):
         assert all(abs(mesh.nodes[node][axis]) < 1e-9 for node in mesh.node_sets[name]), name
+    assert meshes.set_names(["A b", "a_b_2", "a_b", "A B"]) == {"A b": "a_b_3", "a_b_2": "a_b_2", "a_b": "a_b",
+                                                                "A B": "a_b_4"}

@@ -281,9 +281,14 @@ def is_there(path: Path) -> bool:
     return path.is_file() or (path / "restart.h5").is_file()
 
 
+def is_continued(line: str) -> bool:
+    """Tell whether a line is continued on the next one."""
+    return "&" in line and before_comment(line).strip().endswith("&")
+
+
 def is_head(statement: Statement) -> bool:
     """Tell whether a statement begins a block."""
-    return statement.text().startswith("*")
+    return any("*" in line for line in statement.lines) and statement.text().startswith("*")
 
 
 def words_of_head(text: str) -> list[str]:
@@ -300,7 +305,7 @@ def statements(text: str) -> Iterator[Statement]:
     while first < len(lines):
         last = first + 1
         of_title = in_title and not lines[first].lstrip().startswith("*")
-        while not of_title and last < len(lines) and before_comment(lines[last - 1]).strip().endswith("&"):
+        while not of_title and last < len(lines) and is_continued(lines[last - 1]):
             last += 1
         statement = Statement(lines[first:last], first + 1, of_title)
         yield statement

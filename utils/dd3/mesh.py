@@ -334,7 +334,7 @@ def check_middles(mesh: Mesh, path: Path) -> None:
 
 def middles(count: int) -> list[tuple[int, int, int]]:
     """Return the places between two others of a hexahedron of second order, each with these two."""
-    places = {place: i for i, place in enumerate(NATURAL[:count])}
+    places: dict[tuple[int, ...], int] = {place: i for i, place in enumerate(NATURAL[:count])}
     found = []
     for place, node in places.items():
         for axis in (axis for axis in range(3) if place[axis] == 0):
