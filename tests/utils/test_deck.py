@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Input files as objects: read, changed, written; what is not changed stays as it is."""
 
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ from helpers import ROOT
 
 import dd3
 from dd3 import deck
+from dd3.tools.blocks import read_blocks
 
 TEXT = """# A strip
 *TITLE
@@ -31,6 +33,11 @@ TEXT = """# A strip
 *TOOL punch
   patches = "${tools}/punch.bez"
 """
+HEADS = ("*TITLE # a\n  it's \"drawn # trimmed\" &\n  5 & 6 = 11\t! sum\n  last &\n\t*PARAMETER\n  y = 300\n"
+         "*BLANK\ts\n  size = 10 4 1\n  divisions = 2 &  # x\n    2 1\n  material = \"steel\"\n"
+         "*MATERIAL\t\"steel\"   # ours\n  young = 2.1d5\n  poisson = 0.3\n  yield = von_mises\n"
+         "  hardening = perfect Y0=${y}\n*Boundary &\n 'x'\n  set = x_min\n  fix = x y z\n"
+         "*PHASE\tdraw\n  control\t=\tload\n  trial = 1\n  displace = x_max x 0.01\n")
 
 
 def test_unchanged():
@@ -122,3 +129,32 @@ def test_errors(tmp_path):
         job.write("other/a.dat")
     (tmp_path / "other" / "punch.bez").write_text("")
     job.write("other/a.dat")
+
+
+def test_heads_and_titles(tmp_path):
+    """Check that heads of blocks and lines of a title are read as by the program, and written as they are."""
+    (tmp_path / "a.dat").write_text(HEADS)
+    job = deck.read("a.dat")
+    assert [(block.keyword, block.name) for block in job] == [
+        ("TITLE", ""), ("PARAMETER", ""), ("BLANK", "s"), ("MATERIAL", "steel"), ("Boundary", "x"),
+        ("PHASE", "draw")]
+    assert job["TITLE"].text == "it's \"drawn\n5 & 6 = 11\nlast &" and job.parameters["y"] == "300"
+    assert job["PHASE", "Draw"]["control"] == "load" and job["MATERIAL", "steel"].numbers("young") == [2.1e5]
+    assert job["BLANK"].numbers("divisions") == [2, 2, 1] and str(job) == HEADS and not job.changed
+    job["PHASE", "draw"]["trial"] = 0.5
+    job["TITLE"].text = "all &\nnew &"
+    changed = str(job)
+    kept = HEADS[HEADS.index("\t*PARAM"):].replace("trial = 1", "trial = 0.5")
+    assert changed == "*TITLE # a\n  all &\n  new &\n" + kept
+    assert deck.Deck(changed)["TITLE"].text == job["TITLE"].text
+    assert [(block.keyword, block.name) for block in read_blocks("a.dat")] == [
+        (block.keyword.lower(), block.name) for block in job]
+
+
+def test_heads_by_program(program, tmp_path):
+    """Check that the program takes the names and the title of the same file."""
+    (tmp_path / "a.dat").write_text(HEADS)
+    done = subprocess.run([program, "--check", "a.dat"], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    for line in deck.read("a.dat")["TITLE"].text.splitlines():
+        assert line in done.stdout, done.stdout

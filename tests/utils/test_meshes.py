@@ -207,3 +207,99 @@ def test_merge():
     assert len(mesh.nodes) == 12 and meshes.turn_mirrored(mesh) == 0
     mesh.elements[1] = mesh.elements[1][4:] + mesh.elements[1][:4]
     assert meshes.turn_mirrored(mesh) == 1
+
+
+# The order of VTK, of its manual: 12 edges as in Abaqus, faces -x +x -y +y -z +z, centre.
+VTK_PLACES = [*meshes.NATURAL[:20], (-1, 0, 0), (1, 0, 0), (0, -1, 0), (0, 1, 0), (0, 0, -1), (0, 0, 1), (0, 0, 0)]
+GRID = """# vtk DataFile Version 2.0
+one cell
+ASCII
+DATASET UNSTRUCTURED_GRID
+POINTS {0} double
+{2}
+CELLS 1 {3}
+{0} {4}
+CELL_TYPES 1
+{1}
+"""
+
+
+def second_order(kind, points):
+    """Return the text of a VTK file with one cell, whose nodes have these places in its order."""
+    return GRID.format(len(points), kind, "\n".join(" ".join(map(str, point)) for point in points), len(points) + 1,
+                       " ".join(map(str, range(len(points)))))
+
+
+def in_order(path):
+    """Tell whether the nodes of the hexahedra of an .inp file are where those of Abaqus are, without curved edges."""
+    mesh = meshes.read_inp(Path(path), None)
+    for nodes in mesh.elements.values():
+        points, natural = np.array([mesh.nodes[node] for node in nodes]), np.array(meshes.NATURAL)[:len(nodes)]
+        shape = np.prod(1 + natural[:, None, :] * np.array(CORNERS), axis=2) / 8
+        if len(nodes) == 8 or not np.allclose(points, shape @ points[:8], atol=1e-6):
+            return False
+    return True
+
+
+@pytest.mark.parametrize("kind, count", ((25, 20), (29, 27)))
+def test_second_order(tmp_path, kind, count):
+    """Read a cell of VTK of second order; refuse one with nodes between corners in a wrong order."""
+    points = (np.array(VTK_PLACES[:count]) + 1) * (10, 5, 1)
+    (tmp_path / "q.vtk").write_text(second_order(kind, points.tolist()))
+    call("mesh", "q.vtk", "q.inp")
+    assert in_order("q.inp")
+    points[[12, 16]] = points[[16, 12]]
+    (tmp_path / "q.vtk").write_text(second_order(kind, points.tolist()))
+    said = call("mesh", "q.vtk", "q.inp", expect=2)
+    assert re.search(r"q.vtk: error: node 13 of element \d+ is 10.0\d* mm from the middle between its nodes 5 and 6, "
+                     "which are 20 mm apart", said), said
+    bent = np.array(VTK_PLACES[:count], float)  # an arc of 100 degrees, whose nodes are right
+    angle, radius = np.radians(50) * bent[:, 0], 20 + bent[:, 2]
+    points = np.column_stack([radius * np.sin(angle), 5 * bent[:, 1], radius * np.cos(angle)])
+    (tmp_path / "q.vtk").write_text(second_order(kind, points.tolist()))
+    call("mesh", "q.vtk", "q.inp")
+
+
+@pytest.mark.parametrize("incomplete, suffixes", ((1, ("msh", "vtk", "unv", "med", "bdf")), (0, ("msh", "vtk", "med"))))
+def test_second_order_of_gmsh(tmp_path, incomplete, suffixes):
+    """Read what Gmsh writes of second order."""
+    gmsh.initialize()
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.option.setNumber("Mesh.SecondOrderIncomplete", incomplete)
+    gmsh.option.setNumber("Mesh.RecombineAll", 1)
+    gmsh.model.occ.addBox(0, 0, 0, 20, 10, 2)
+    gmsh.model.occ.synchronize()
+    for _, curve in gmsh.model.getEntities(1):
+        gmsh.model.mesh.setTransfiniteCurve(curve, 3)
+    gmsh.model.mesh.setTransfiniteAutomatic()
+    gmsh.model.mesh.generate(3)
+    gmsh.model.mesh.setOrder(2)
+    for suffix in suffixes:
+        gmsh.write(str(tmp_path / f"box.{suffix}"))
+    gmsh.finalize()
+    for suffix in suffixes:
+        call("mesh", f"box.{suffix}", "box.inp")
+        assert in_order("box.inp"), suffix
+
+
+def test_merge_too_large(tmp_path):
+    """Refuse to merge two nodes of an element; what has a node twice before is not due to it."""
+    (tmp_path / "model.inp").write_text(MODEL)
+    said = call("mesh", "--scale", "1000", "--merge", "2", "model.inp", "part.inp", expect=2)
+    assert "--merge 2 makes one node of the nodes 15 and 11 of element 5, whose shortest edge is 1 mm long" in said, said
+    assert not (tmp_path / "part.inp").exists()
+    call("mesh", "--scale", "1000", "--merge", "0.9", "model.inp", "part.inp")
+
+
+def test_names_of_sets(tmp_path):
+    """Number the later ones of sets whose names become the same."""
+    geometry = GEOMETRY.replace("at y 0", "Bottom face").replace("at x 0", "bottom_FACE")
+    (tmp_path / "disc.geo").write_text(geometry)
+    said = call("mesh", "disc.geo", "disc.inp")
+    assert "node sets: bottom_face bottom_face_2\n" in said, said
+    assert "node set 'bottom_FACE' is written as bottom_face_2: another one is bottom_face\n" in said, said
+    mesh = meshes.read_inp(tmp_path / "disc.inp", None)
+    for name, axis in (("bottom_face", 1), ("bottom_face_2", 0)):
+        assert all(abs(mesh.nodes[node][axis]) < 1e-9 for node in mesh.node_sets[name]), name
+    assert meshes.set_names(["A b", "a_b_2", "a_b", "A B"]) == {"A b": "a_b_3", "a_b_2": "a_b_2", "a_b": "a_b",
+                                                                "A B": "a_b_4"}

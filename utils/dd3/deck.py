@@ -11,7 +11,6 @@
 
 import re
 from collections.abc import Iterator, MutableMapping
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +22,7 @@ INDENT = "  "
 # Words as the program takes them: a quote is one at the beginning of a word.
 WORDS = re.compile(r"""(?:[\s=]|"[^"]*"|'[^']*'|[^\s=#!"'][^\s=#!]*)*""")
 LINE = re.compile(r"[^\r\n]*(?:\r\n|\r|\n)|[^\r\n]+")
+HEAD_WORD = re.compile(r"""("[^"]*"|'[^']*')|([^\s=]+|=)""")
 WORD = re.compile(r"""["']([^"']*)["']|([^\s"'=]+)""")
 
 
@@ -47,13 +47,16 @@ def before_comment(text: str) -> str:
 
 
 class Statement:
-    """A statement of a file: its lines, more than one where it is continued, and the number of the first, from 1."""
+    """A statement of a file: its lines, more than one where it is continued, and the number of the first, from 1.
+    of_title: whether it is a line of *TITLE, in which quotes and signs of continuation are characters as others."""
 
-    def __init__(self, lines: list[str], number: int) -> None:
-        self.lines, self.number = lines, number
+    def __init__(self, lines: list[str], number: int, of_title: bool = False) -> None:
+        self.lines, self.number, self.of_title = lines, number, of_title
 
     def text(self) -> str:
         """Return the statement without comments and signs of continuation."""
+        if self.of_title:
+            return re.split("[#!]", self.lines[0], maxsplit=1)[0].replace("\t", " ").strip()
         return " ".join(before_comment(line).strip().removesuffix("&").strip() for line in self.lines).strip()
 
     def change(self, value: str) -> None:
@@ -73,8 +76,8 @@ class Block(MutableMapping[str, str]):
 
     def __init__(self, deck: "Deck", head: Statement) -> None:
         self.deck, self.head, self.statements = deck, head, list[Statement]()
-        self.keyword, _, name = head.text()[1:].partition(" ")
-        self.name = name.strip()
+        keyword, *name = words_of_head(head.text())
+        self.keyword, self.name = keyword[1:], " ".join(name)
 
     def __eq__(self, other: object) -> bool:  # blocks of the same values are not the same block
         return self is other
@@ -152,7 +155,7 @@ class Block(MutableMapping[str, str]):
     @text.setter
     def text(self, value: str) -> None:
         rest = self.statements[self.end():]
-        self.statements = [Statement([f"{INDENT}{line}\n"], 0) for line in value.splitlines()] + rest
+        self.statements = [Statement([f"{INDENT}{line}\n"], 0, of_title=True) for line in value.splitlines()] + rest
         self.deck.changed = True
 
 
@@ -176,7 +179,7 @@ class Deck:
         self.above: list[Statement] = []  # the first block
         self.changed = path is None
         for statement in statements(text):
-            if statement.text().startswith("*"):
+            if is_head(statement):
                 self.blocks.append(Block(self, statement))
             elif self.blocks:
                 self.blocks[-1].statements.append(statement)
@@ -278,15 +281,37 @@ def is_there(path: Path) -> bool:
     return path.is_file() or (path / "restart.h5").is_file()
 
 
+def is_continued(line: str) -> bool:
+    """Tell whether a line is continued on the next one."""
+    return "&" in line and before_comment(line).strip().endswith("&")
+
+
+def is_head(statement: Statement) -> bool:
+    """Tell whether a statement begins a block."""
+    return any("*" in line for line in statement.lines) and statement.text().startswith("*")
+
+
+def words_of_head(text: str) -> list[str]:
+    """Return the words of a statement that begins a block, those in quotes without them."""
+    return [quoted[1:-1] or word for quoted, word in HEAD_WORD.findall(text)]
+
+
 def statements(text: str) -> Iterator[Statement]:
     """Yield the statements of a text, empty lines and comments among them."""
     lines = LINE.findall(text)
     if lines and not lines[-1].endswith(("\n", "\r")):
         lines[-1] += "\n"
-    open_ = [before_comment(line).strip().endswith("&") for line in lines]
-    starts = [i for i in range(len(lines)) if i == 0 or not open_[i - 1]]
-    for first, last in pairwise([*starts, len(lines)]):
-        yield Statement(lines[first:last], first + 1)
+    first, in_title = 0, False
+    while first < len(lines):
+        last = first + 1
+        of_title = in_title and not lines[first].lstrip().startswith("*")
+        while not of_title and last < len(lines) and is_continued(lines[last - 1]):
+            last += 1
+        statement = Statement(lines[first:last], first + 1, of_title)
+        yield statement
+        if is_head(statement):
+            in_title = words_of_head(statement.text())[0].lower() == "*title"
+        first = last
 
 
 def read(path: str | Path) -> Deck:

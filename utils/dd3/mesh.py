@@ -9,11 +9,12 @@ Elements other than hexahedra, such as the faces and edges of a Gmsh mesh, and n
 nodes and elements are numbered from 1. Physical groups of volumes become element sets, those of surfaces, curves and
 points node sets. Mirrored elements are turned. Of a model of Abaqus or CalculiX the mesh is read in the place of its
 instance, with local axes, generated and copied nodes and elements; what is left out is listed with its line. A node on
-an edge or a face of an element that does not have it is refused.
+an edge or a face of an element that does not have it is refused, and so is one between corners far from the middle.
 """
 import itertools
+import math
 import re
-from collections.abc import Container, Sequence
+from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -21,7 +22,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial import cKDTree
 
-from dd3.bound import bound_nodes
+from dd3.bound import EDGES, bound_nodes
 from dd3.command import new_parser
 from dd3.errors import LOG, Problem
 from dd3.fields import Fields
@@ -41,6 +42,9 @@ GMSH_HEXAHEDRA = {5: 8, 17: 20, 12: 27}
 KINDS = ("point", "curve", "surface", "volume")
 MIDDLE = 0.02  # distance of a node from the middle of an edge to which it is bound by its place, over its length
 VTK_HEXAHEDRA = {12: 8, 25: 20, 29: 27}
+# Places of a cell of VTK in the order of Abaqus: VTK has the faces in the order -x +x -y +y -z +z, then the centre.
+VTK_ORDER = [*range(20), 26, 24, 25, 22, 21, 23, 20]
+ALONG, AWAY = 0.25, 0.5  # distance of a node from the middle of an edge, along it and in all, over its length, at most
 INP_HEXAHEDRA = re.compile(r"(?:C3D(?:8|20|27)|SC8|CSS8)[A-Z]*$")
 
 
@@ -88,10 +92,29 @@ def read_gmsh(path: Path) -> Mesh:
                 continue
             places = {tuple(round(value) for value in natural[3 * i:3 * i + 3]): i for i in range(count)}
             order = [places[place] for place in NATURAL[:count]]
-            for label, these in zip(labels.tolist(), nodes.reshape(-1, count)[:, order].tolist()):
+            nodes = nodes.reshape(-1, count)
+            if path.suffix.lower() == ".vtk" and count > 8:
+                order = order_of_vtk(order, np.array([[mesh.nodes[node] for node in these] for these in nodes]))
+            for label, these in zip(labels.tolist(), nodes[:, order].tolist()):
                 mesh.elements[label] = these
         gmsh_groups(gmsh, mesh)
         return mesh
+
+
+def order_of_vtk(order: list[int], points: np.ndarray) -> list[int]:
+    """Return the order of the nodes of cells of VTK of second order, points (m, n, 3), by that of Gmsh: Gmsh 4.14 and
+    4.15 exchange the nodes by the inverse of the order that they need. The order with the nodes nearer to the middle
+    between others holds, also for a Gmsh in which this is mended."""
+    to_vtk = VTK_ORDER[:len(order)]
+    of_vtk = np.empty(len(order), int)
+    of_vtk[to_vtk] = order
+    mended = np.argsort(of_vtk)[to_vtk].tolist()
+
+    def away(one: list[int]) -> float:
+        these = points[:, one]
+        return sum(float(np.linalg.norm(2 * these[:, node] - these[:, a] - these[:, b], axis=1).sum())
+                   for node, a, b in middles(len(one)))
+    return min(order, mended, key=away)
 
 
 def read_run(path: Path, step: int = 0) -> Mesh:
@@ -103,11 +126,8 @@ def read_run(path: Path, step: int = 0) -> Mesh:
         raise Problem(f"{path}: cells of type {kind}, expected hexahedra")
     mesh = Mesh(nodes={i + 1: tuple(map(float, point)) for i, point in enumerate(points)})
     for i in range(len(offsets) - 1):
-        mesh.elements[i + 1] = [int(node) + 1 for node in cells[offsets[i]:offsets[i + 1]]]
-        # VTK has the face nodes in the order -x +x -y +y -z +z, then the centre.
-        if kind == 29:
-            face = mesh.elements[i + 1][20:]
-            mesh.elements[i + 1][20:] = [face[k] for k in (6, 4, 5, 2, 1, 3, 0)]
+        nodes = cells[offsets[i]:offsets[i + 1]]
+        mesh.elements[i + 1] = [int(nodes[k]) + 1 for k in VTK_ORDER[:len(nodes)]]
     if kind == 12:
         mesh.bound = [(node + 1, a + 1, b + 1) for (a, b), node in bound_nodes(cells.reshape(-1, 8), points).items()]
     number = material_numbers(fields, step)
@@ -215,16 +235,31 @@ def turn_mirrored(mesh: Mesh) -> int:
 
 
 def merge_nodes(mesh: Mesh, tolerance: float) -> int:
-    """Replace nodes within a tolerance of an earlier one; return their number."""
+    """Replace nodes within a tolerance of an earlier one; return their number. Two of an element are refused."""
     labels = list(mesh.nodes)
     same: dict[int, int] = {}
     for a, b in sorted(cKDTree(list(mesh.nodes.values())).query_pairs(tolerance)):
         if labels[a] not in same:
             same.setdefault(labels[b], labels[a])
-    mesh.elements = {label: [same.get(node, node) for node in nodes] for label, nodes in mesh.elements.items()}
+    for label, nodes in mesh.elements.items():
+        check_merged(mesh, label, same, tolerance)
+        mesh.elements[label] = [same.get(node, node) for node in nodes]
     mesh.bound = [tuple(same.get(node, node) for node in labels) for labels in mesh.bound]
     mesh.node_sets = {name: {same.get(node, node) for node in members} for name, members in mesh.node_sets.items()}
     return len(same)
+
+
+def check_merged(mesh: Mesh, label: int, same: dict[int, int], tolerance: float) -> None:
+    """Refuse an element of which two nodes become the same one."""
+    nodes = mesh.elements[label]
+    if len({same.get(node, node) for node in nodes}) == len(set(nodes)):
+        return
+    a, b = next(pair for pair in itertools.combinations(dict.fromkeys(nodes), 2)
+                if len({same.get(node, node) for node in pair}) == 1)
+    edges = [math.dist(mesh.nodes[nodes[i]], mesh.nodes[nodes[j]]) for i, j in EDGES]
+    raise Problem(f"--merge {tolerance:.9g} makes one node of the nodes {a} and {b} of element {label}, whose "
+                  f"shortest edge is {min(edges):.6g} mm long; expected less than the distance of any two nodes of an "
+                  "element")
 
 
 def check_nodes(mesh: Mesh) -> set[int]:
@@ -277,6 +312,37 @@ def check_joints(mesh: Mesh, path: Path) -> int:
     return len(cKDTree(points[outer]).query_pairs(TOLERANCE * float(edges.min()))) if len(edges) else 0
 
 
+def check_middles(mesh: Mesh, path: Path) -> None:
+    """Refuse elements of second order with a node far from the middle between two others, which are in a wrong order:
+    a quarter along the edge the shape functions have no inverse at its end, half of it away the edge is a half circle.
+    """
+    for count in {len(nodes) for nodes in mesh.elements.values()} - {8}:
+        elements = [label for label, nodes in mesh.elements.items() if len(nodes) == count]
+        points = np.array([[mesh.nodes[node] for node in mesh.elements[label]] for label in elements])
+        for node, a, b in middles(count):
+            edge, away = points[:, b] - points[:, a], points[:, node] - (points[:, a] + points[:, b]) / 2
+            length = np.linalg.norm(edge, axis=1)
+            far = ((np.abs((edge * away).sum(1)) > ALONG * length**2)
+                   | (np.linalg.norm(away, axis=1) > AWAY * (1 + TOLERANCE) * length))
+            for i in np.flatnonzero(far)[:1].tolist():
+                nodes = mesh.elements[elements[i]]
+                raise Problem(f"{path}: error: node {nodes[node]} of element {elements[i]} is "
+                              f"{np.linalg.norm(away[i]):.6g} mm from the middle between its nodes {nodes[a]} and "
+                              f"{nodes[b]}, which are {length[i]:.6g} mm apart; expected a node near the middle: are "
+                              "the nodes of the elements in the order of the format?")
+
+
+def middles(count: int) -> list[tuple[int, int, int]]:
+    """Return the places between two others of a hexahedron of second order, each with these two."""
+    places: dict[tuple[int, ...], int] = {place: i for i, place in enumerate(NATURAL[:count])}
+    found = []
+    for place, node in places.items():
+        for axis in (axis for axis in range(3) if place[axis] == 0):
+            ends = [places.get((*place[:axis], sign, *place[axis + 1:])) for sign in (-1, 1)]
+            found += [(node, a, b) for a, b in [ends] if a is not None and b is not None]
+    return found
+
+
 def renumber(mesh: Mesh) -> None:
     """Number nodes and elements from 1; nodes without elements are left out, and empty sets."""
     used = check_nodes(mesh)
@@ -300,6 +366,23 @@ def set_name(name: str) -> str:
     return word if word[:1].isalpha() else f"set_{word}"
 
 
+def set_names(sets: Iterable[str]) -> dict[str, str]:
+    """Return the names of sets as words of an input file; of those that would become the same, the one that is this
+    word already keeps it, else the first, and the others are numbered."""
+    sets = list(sets)
+    words = {name: name for name in sets if set_name(name) == name}
+    free = {set_name(name) for name in sets}
+    for name in sets:
+        if name in words:
+            continue
+        word = set_name(name)
+        if word in words.values():
+            word = next(numbered for k in itertools.count(2) if (numbered := f"{word}_{k}") not in free)
+            free.add(word)
+        words[name] = word
+    return {name: words[name] for name in sets}
+
+
 def write_inp(path: Path, mesh: Mesh, source: Path) -> None:
     """Write the file."""
     counts = {len(nodes) for nodes in mesh.elements.values()}
@@ -317,17 +400,21 @@ def write_inp(path: Path, mesh: Mesh, source: Path) -> None:
             file.write("*MPC\n")
             file.writelines(f"LINEAR, {node}, {a}, {b}\n" for node, a, b in mesh.bound)
         for keyword, sets in ("NSET", mesh.node_sets), ("ELSET", mesh.element_sets):
+            words_of = set_names(sets)
             for name, members in sets.items():
-                file.write(f"*{keyword}, {keyword}={set_name(name)}\n")
+                file.write(f"*{keyword}, {keyword}={words_of[name]}\n")
                 file.writelines(", ".join(map(str, members[i:i + 14])) + "\n" for i in range(0, len(members), 14))
 
 
 def report(path: Path, mesh: Mesh, merged: int, mirrored: int) -> None:
     """Say what was written and what was changed."""
     LOG.info(f"{path}: {len(mesh.nodes)} nodes, {len(mesh.elements)} elements")
-    for what, sets in ("node sets", mesh.node_sets), ("element sets", mesh.element_sets):
+    for what, sets in ("node set", mesh.node_sets), ("element set", mesh.element_sets):
         if sets:
-            LOG.info(f"{what}: {' '.join(map(set_name, sets))}")
+            LOG.info(f"{what}s: {' '.join(set_names(sets).values())}")
+        for name, word in set_names(sets).items():
+            if word != set_name(name):
+                LOG.info(f"{what} '{name}' is written as {word}: another one is {set_name(name)}")
     if merged:
         LOG.info(f"nodes merged: {merged}")
     if mirrored:
@@ -362,8 +449,9 @@ def main(words: Sequence[str] | None = None) -> None:
         raise Problem(f"{options.source}: no hexahedra" + (f"; there are {found}" if found else ""))
     if options.scale != 1.0:
         mesh.nodes = {label: tuple(options.scale * value for value in point) for label, point in mesh.nodes.items()}
-    merged = merge_nodes(mesh, options.merge) if options.merge else 0
     check_nodes(mesh)
+    merged = merge_nodes(mesh, options.merge) if options.merge else 0
+    check_middles(mesh, options.source)
     doubled = check_joints(mesh, options.source)
     renumber(mesh)
     mirrored = turn_mirrored(mesh)

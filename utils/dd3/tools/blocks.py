@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from dd3.deck import before_comment
+from dd3.deck import statements, words_of_head
 from dd3.tables import read_text
 
 
@@ -64,8 +64,8 @@ class Parameters:
 
 def lines_of_text(text: str) -> Iterator[str]:
     """Yield the lines of a text; no comments, no empty lines."""
-    for line in re.sub(r"&[ \t]*\n", " ", text).splitlines():
-        if line := before_comment(line).strip():
+    for statement in statements(text):
+        if line := statement.text():
             yield line
 
 
@@ -81,8 +81,8 @@ def blocks_of(lines: Iterable[str]) -> list[Block]:
     for line in lines:
         parameters.follow(line)
         if line.startswith("*"):
-            keyword, *name = line[1:].split(None, 1)
-            blocks.append(Block(keyword.lower(), "".join(name)))
+            keyword, *name = words_of_head(line)
+            blocks.append(Block(keyword[1:].lower(), " ".join(name)))
         elif blocks:
             key, _, value = (part.strip() for part in line.partition("="))
             blocks[-1].values.append((key.lower(), parameters.put(value)))
