@@ -233,7 +233,7 @@ def points_of(drawing: Drawing, entity: Any, matrix: Any, entry: Entry) -> Itera
     except TypeError:  # a POLYLINE that is a mesh
         return
     entry.leave(NO_LENGTH)
-    for part in (line if matrix is None else line.transform(matrix)).sub_paths():
+    for part in (line if matrix is None else line.transform(matrix)).sub_paths() if len(line) else ():
         control = finite(entry, np.array([tuple(point) for point in part.control_vertices()]))
         fine = FINEST * float(np.ptp(control, axis=0).max())
         yield np.array([tuple(point) for point in part.flattening(max(drawing.chord, fine))])
