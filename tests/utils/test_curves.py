@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 from helpers import call
 from mutations import mutants
+from scipy.interpolate import BSpline
 
 from dd3.account import Account
-from dd3.curve import joined, read_curves, sampled
+from dd3.curve import joined, read_curves
 from dd3.dxf import pieces_of_dxf
 from dd3.errors import Problem
+from dd3.gmsh_session import session
 
 SQUARE = [(0, 0), (20, 0), (20, 10), (0, 10)]
 
@@ -168,6 +170,160 @@ def test_left_out(tmp_path):
     assert "no curve" in refused(lambda _, space: space.add_text("x"), tmp_path)
 
 
+@pytest.mark.parametrize("solid", [False, True])
+def test_control_frame(tmp_path, solid):
+    """Check that the control frame of a fitted polyline, flag 16 of its vertices, is no part of the curve."""
+    frame = np.array([(0, 0), (20, 60), (80, 60), (100, 0)], float)
+    t = np.linspace(0, 1, 41)[:, None]
+    cubic = (1 - t)**3 * frame[0] + 3 * t * (1 - t)**2 * frame[1] + 3 * t**2 * (1 - t) * frame[2] + t**3 * frame[3]
+
+    def build(_, space):
+        line = space.add_polyline3d([]) if solid else space.add_polyline2d([])
+        line.dxf.flags |= 4
+        for points, flag in ((frame, 16), (cubic, 8)):
+            line.append_vertices([(x, y, 0) for x, y in points], dxfattribs={"flags": flag | 32 * solid})
+        space.add_line((100, 0), (0, 0))
+    x, y = cubic.T  # 3240 below the curve, less by the 40 chords of the file
+    assert np.allclose(areas(build, tmp_path)[0], abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2, rtol=1e-6)
+
+
+def spline_over_box(control, degree):
+    """Return what draws a spline with clamped knots of equal steps over three lines to y = -50."""
+    def build(_, space):
+        knots = np.concatenate([np.zeros(degree), np.arange(len(control) - degree + 1.0),
+                                np.full(degree, len(control) - degree)])
+        spline = space.add_spline(degree=degree)
+        spline.control_points, spline.knots = [(x, y, 0) for x, y in control], list(knots)
+        corners = [control[-1], (100, -50), (0, -50), control[0]]
+        for start, end in zip(corners, corners[1:]):
+            space.add_line(start, end)
+    return build
+
+
+def area_below(control, degree):
+    """Return the area between a spline with clamped knots of equal steps and y = -50, by its derivative."""
+    inner = np.arange(len(control) - degree + 1.0)
+    curve = BSpline(np.concatenate([np.zeros(degree), inner, np.full(degree, inner[-1])]), np.array(control), degree)
+    x, w = np.polynomial.legendre.leggauss(8)
+    t = (inner[:-1, None] + 0.5 * (x + 1)).ravel()
+    return float(np.tile(0.5 * w, len(inner) - 1) @ ((curve(t)[:, 1] + 50) * curve.derivative()(t)[:, 0]))
+
+
+def test_features_between_places(tmp_path):
+    """Check a notch and a bump of a spline that lie between points in a few equal steps, and the number of points."""
+    x = np.linspace(0, 100, 41)
+    notch = np.column_stack([x, np.where((x > 13) & (x < 24), -5.0, 0.0)])
+    found, said = areas(spline_over_box(notch, 1), tmp_path)
+    assert np.allclose(found, 5000 - 5 * (7.5 + 12.5) / 2) and "curve 1: 8 points" in said
+    bump = np.column_stack([x, np.where(np.arange(41) == 8, 8.0, 0.0)])
+    found, said = areas(spline_over_box(bump, 3), tmp_path)
+    assert abs(found[0] - area_below(bump, 3)) < 0.05 and area_below(bump, 3) > 5015
+    assert int(said.split("curve 1: ")[1].split()[0]) < 80
+    smooth = np.column_stack([x, 20 * np.sin(x * math.pi / 100)])
+    found, said = areas(spline_over_box(smooth, 3), tmp_path)
+    assert abs(found[0] - area_below(smooth, 3)) < 0.5 and "curve 1: 63 points" in said
+
+
+def test_references_that_are_not_seen(tmp_path):
+    """Check that references that are invisible or on a frozen layer are left out with what they hold, nested ones
+    too, but that an off layer hides nothing on other layers."""
+    def build(where, nested=False, **fields):
+        def drawing(document, space):
+            document.layers.add("COLD").freeze()
+            document.layers.add("OFF").off()
+            document.blocks.new("HOLE").add_circle((0, 0), 3, dxfattribs={"layer": "CUT"})
+            document.blocks.new("GROUP").add_blockref("HOLE", (2, 0), dxfattribs={"layer": where if nested else "0"})
+            fields["layer"] = "0" if nested else where
+            space.add_blockref("GROUP", (10, 5), dxfattribs=fields)
+            space.add_lwpolyline([(0, 0), (40, 0), (40, 20), (0, 20)], close=True)
+        return drawing
+    for nested in (False, True):
+        found, said = areas(build("COLD", nested), tmp_path)
+        assert np.allclose(found, 800) and "INSERT on layer COLD: layer COLD is frozen" in said
+        found, _ = areas(build("COLD", nested), tmp_path, "--layer", "CUT", "--chord", 1e-4)
+        assert np.allclose(found, 9 * math.pi, rtol=1e-3)
+    assert len(areas(build("OFF"), tmp_path)[0]) == 2
+    found, said = areas(build("0", invisible=1), tmp_path)
+    assert np.allclose(found, 800) and "INSERT on layer 0: invisible" in said
+
+
+def test_equal_and_empty(tmp_path):
+    """Check that one of several equal curves is used, in either direction and from any point, that curves of length 0
+    are left out, and that closed curves without area are refused."""
+    corners = [*SQUARE, SQUARE[0]]
+
+    def circles(_, space):
+        for _ in range(3):
+            space.add_circle((5, 5), 2)
+    found, said = areas(circles, tmp_path, "--chord", 1e-4)
+    assert np.allclose(found, 4 * math.pi, rtol=1e-3) and len(found) == 1
+    assert "CIRCLE on layer 0: equal to another one, which is used (2 of this kind)" in said
+
+    def squares(_, space):
+        for points in (corners, corners[::-1]):
+            for start, end in zip(points, points[1:]):
+                space.add_line(start, end)
+        space.add_lwpolyline([(30, 0), (40, 0), (40, 20), (30, 20)], close=True)
+        space.add_lwpolyline([(40, 20), (40, 0), (30, 0), (30, 20)], close=True)
+    found, said = areas(squares, tmp_path)
+    assert np.allclose(found, 200) and len(found) == 2 and "which is used (4 of this kind)" in said
+
+    def point(_, space):
+        space.add_lwpolyline(SQUARE, close=True)
+        space.add_line((50, 0), (50, 0))
+        space.add_circle((0, 0), 0)
+    found, said = areas(point, tmp_path)
+    assert len(found) == 1 and "LINE on layer 0: of length 0" in said and "CIRCLE on layer 0: of length 0" in said
+
+    def slit(_, space):
+        space.add_lwpolyline([(0, 0), (4, 3), (8, 6)], close=True)
+    assert "a closed curve without area begins at (0 0 0)" in refused(slit, tmp_path)
+
+    def near(_, space):  # short lines in a row, and lines beside each other, are no copies
+        line = [(x, 0) for x in np.arange(0, 0.2, 0.005)] + [(0.2, 0), (0.2, 30), (0.25, 30), (0.25, -1), (0, -1)]
+        for start, end in zip(line, line[1:] + line[:1]):
+            space.add_line(start, end)
+    found, said = areas(near, tmp_path)
+    assert np.allclose(found, 0.2 + 0.05 * 31) and "left out" not in said
+
+
+def test_equal_edges_of_cad(tmp_path):
+    """Check a wire that is doubled, a face that is doubled, and edges that two faces have at a joint, each its own."""
+    def area(name, build):
+        with session() as gmsh:
+            build(gmsh.model.occ)
+            gmsh.model.occ.synchronize()
+            gmsh.write(str(tmp_path / name))
+        said = call("curve", tmp_path / name, tmp_path / "x.txt")
+        curves = read_curves(tmp_path / "x.txt")
+        return [abs(c[:, 0] @ np.roll(c[:, 1], -1) - c[:, 1] @ np.roll(c[:, 0], -1)) / 2 for c in curves], said
+    found, said = area("wires.step", lambda occ: [occ.addCircle(5, 5, 0, 2) for _ in range(2)])
+    assert np.allclose(found, 4 * math.pi, rtol=1e-2) and len(found) == 1 and "equal to another one" in said
+    found, said = area("faces.step", lambda occ: [occ.addRectangle(0, 0, 0, 8, 5) for _ in range(2)])
+    assert np.allclose(found, 40) and len(found) == 1 and "face 2 (Plane): equal to another one, which is used" in said
+    found, said = area("joint.step", lambda occ: [occ.addRectangle(x, 0, 0, 8, 5) for x in (0, 8)])
+    assert np.allclose(found, 80) and len(found) == 1 and "left out" not in said
+
+
+def test_features_of_cad(tmp_path):
+    """Check a notch of a spline of degree 1 in a STEP file."""
+    x = np.linspace(0, 100, 41)
+    notch = np.column_stack([x, np.where((x > 13) & (x < 24), -5.0, 0.0)])
+    with session() as gmsh:
+        occ = gmsh.model.occ
+        points = [occ.addPoint(a, b, 0) for a, b in (*notch, (100, -50), (0, -50))]
+        edges = [occ.addBSpline(points[:41], degree=1)]
+        edges += [occ.addLine(points[i], points[j]) for i, j in ((40, 41), (41, 42), (42, 0))]
+        occ.addPlaneSurface([occ.addCurveLoop(edges)])
+        occ.synchronize()
+        gmsh.write(str(tmp_path / "notch.step"))
+    said = call("curve", tmp_path / "notch.step", tmp_path / "x.txt")
+    curve, = read_curves(tmp_path / "x.txt")
+    x, y = curve[:, 0], curve[:, 1]
+    area = abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
+    assert abs(area - 4950) < 0.5 and len(curve) < 40, said
+
+
 def drawing_bytes():
     """Return a drawing with an array of a block, a spline, an arc and lines."""
     document = ezdxf.new("R2000", units=4)
@@ -190,6 +346,6 @@ def test_mutants(tmp_path, count, seed):
     for mutant in mutants(data[split:end], count, seed):
         path.write_bytes(data[:split] + mutant + data[end:])
         try:
-            joined(path, pieces_of_dxf(path, 0.1, None, sampled, Account()))
+            joined(path, pieces_of_dxf(path, 0.1, None, Account()))
         except Problem as problem:
             assert "mutant.dxf" in str(problem)

@@ -8,22 +8,26 @@ STEP, IGES and BREP files are read by Gmsh, DXF files by ezdxf: lines, arcs, pol
 too. What of the file is not used is listed. Curves that are joined at their ends are one; each must be closed. The
 distance between the curve and the straight lines between its points is at most --chord.
 """
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from dd3.account import Account
 from dd3.command import new_parser
-from dd3.dxf import pieces_of_dxf
+from dd3.dxf import EQUAL, NO_LENGTH, pieces_of_dxf
 from dd3.errors import LOG, Problem
 from dd3.gmsh_session import session
+from dd3.pieces import JOIN, length_of, points_only, repeated, sampled, size_of
 from dd3.tools.cad_account import enter_cad
 from dd3.tools.cad_file import refuse_cut
 
-MOST = 4096  # pieces of an edge
-JOIN = 1e-4  # largest gap between ends that are joined, over the size of all curves
+PLANE = 1e-6  # distance of points from a plane over the size of their curve
+NO_AREA = 1e-8  # of a curve, over the square of its length
+PLACES = {"Line": 3, "Circle": 33, "Ellipse": 33}  # of an edge that are looked at
+PLACES_OF_OTHERS = 2049  # Gmsh does not give the knots
 
 
 def pieces_of_cad(path: Path, chord: float, account: Account) -> list[np.ndarray]:
@@ -31,38 +35,61 @@ def pieces_of_cad(path: Path, chord: float, account: Account) -> list[np.ndarray
     refuse_cut(path)
     with session(path) as gmsh:
         gmsh.model.occ.synchronize()
-        enter_cad(path, account, len(gmsh.model.getEntities(2)))
+        faces = [tag for _, tag in gmsh.model.getEntities(2)]
+        enter_cad(path, account, len(faces))
         edges = [tag for _, tag in gmsh.model.getEntities(1)]
-        if gmsh.model.getEntities(2):
-            faces = {tag: len(gmsh.model.getAdjacencies(1, tag)[0]) for tag in edges}
-            for tag in (tag for tag in edges if not faces[tag]):
-                account.enter(str(path), f"{gmsh.model.getType(1, tag)} {tag}").leave("no border of a face")
-            edges = [tag for tag in edges if faces[tag] == 1]
-        found = []
-        for tag in edges:
-            (low,), (high,) = gmsh.model.getParametrizationBounds(1, tag)
-            found.append(sampled(lambda t, tag=tag: np.reshape(  # type: ignore[misc]
-                gmsh.model.getValue(1, tag, t), (-1, 3)), low, high, chord))
-    return unpaired(found)
+        names = {tag: f"{gmsh.model.getType(1, tag)} {tag}" for tag in edges}
+        if faces:
+            twice = equal_faces(gmsh, faces)
+            for tag in twice:
+                account.enter(str(path), f"face {tag} ({gmsh.model.getType(2, tag)})").leave(EQUAL)
+            beside = {tag: list(gmsh.model.getAdjacencies(1, tag)[0]) for tag in edges}
+            for tag in (tag for tag in edges if not beside[tag]):
+                account.enter(str(path), names[tag]).leave("no border of a face")
+            edges = [tag for tag in edges if len([face for face in beside[tag] if face not in twice]) == 1]
+        found = {tag: edge_points(gmsh, tag, chord) for tag in edges}
+    points = points_only(list(found.values()))
+    found = left_out(path, found, [edges[index] for index in points], NO_LENGTH, names, account)
+    if faces:
+        return unpaired(list(found.values()))
+    tags = list(found)
+    same = [tags[index] for index in repeated(list(found.values()), chord)]
+    return list(left_out(path, found, same, EQUAL, names, account).values())
 
 
-def sampled(value: Callable[[np.ndarray], np.ndarray], low: float, high: float, chord: float) -> np.ndarray:
-    """Return points of a curve in equal steps of its parameter, close enough for the chord."""
-    count = 1
-    while True:
-        points = value(np.linspace(low, high, 2 * count + 1))
-        sag = np.linalg.norm(points[1::2] - 0.5 * (points[:-1:2] + points[2::2]), axis=1).max()
-        if (sag <= chord and count >= 4) or count > MOST:
-            straight = sag <= 1e-9 * np.linalg.norm(points[-1] - points[0])
-            return points[[0, -1]] if straight else points
-        count *= 2
+def left_out(path: Path, found: dict[int, np.ndarray], tags: list[int], why: str, names: dict[int, str],
+             account: Account) -> dict[int, np.ndarray]:
+    """Return the edges without some, which are entered with the reason."""
+    for tag in tags:
+        account.enter(str(path), names[tag]).leave(why)
+    return {tag: points for tag, points in found.items() if tag not in tags}
+
+
+def edge_points(gmsh: Any, tag: int, chord: float) -> np.ndarray:
+    """Return points of an edge of a CAD model."""
+    (low,), (high,) = gmsh.model.getParametrizationBounds(1, tag)
+    count = PLACES.get(gmsh.model.getType(1, tag), PLACES_OF_OTHERS)
+    return sampled(lambda t: np.reshape(gmsh.model.getValue(1, tag, t), (-1, 3)), np.linspace(low, high, count), chord)
+
+
+def equal_faces(gmsh: Any, tags: list[int]) -> set[int]:
+    """Return the faces that are equal to an earlier one: with its box, area and centre."""
+    boxes = np.array([gmsh.model.getBoundingBox(2, tag) for tag in tags])
+    near = JOIN * float((boxes[:, 3:].max(0) - boxes[:, :3].min(0)).max())
+    found: set[int] = set()
+    for i, j in sorted(cKDTree(boxes).query_pairs(near)):
+        first, other = (np.array([gmsh.model.occ.getMass(2, tags[index]) ** 0.5,
+                                  *gmsh.model.occ.getCenterOfMass(2, tags[index])]) for index in (i, j))
+        if tags[i] not in found and (abs(first - other) <= near).all():
+            found.add(tags[j])
+    return found
 
 
 def unpaired(pieces: list[np.ndarray]) -> list[np.ndarray]:
     """Return the edges that no other one lies on: faces that are not sewn have each its own edge at a joint."""
     if len(pieces) < 2:
         return pieces
-    size = np.ptp(np.vstack(pieces), axis=0).max()
+    size = size_of(pieces)
     keys = np.array([np.hstack((piece[[0, -1]].mean(0), arc_middle(piece), abs(piece[0] - piece[-1])))
                      for piece in pieces])
     pairs = cKDTree(keys).query_pairs(JOIN * size)
@@ -81,8 +108,7 @@ def joined(path: Path, pieces: list[np.ndarray]) -> list[np.ndarray]:
     if not pieces:
         raise Problem(f"{path}: no curve" + ("" if path.suffix.lower() == ".dxf" else
                                              ": a solid has no free edges; give its faces, or a wire"))
-    size = np.ptp(np.vstack(pieces), axis=0).max()
-    near = JOIN * size
+    near = JOIN * size_of(pieces)
     ends = np.array([piece[[0, -1]] for piece in pieces]).reshape(-1, 3)
     partner = np.full(len(ends), -1)
     for i, j in sorted(cKDTree(ends).query_pairs(near), key=lambda pair: np.linalg.norm(ends[pair[0]] - ends[pair[1]])):
@@ -102,7 +128,21 @@ def joined(path: Path, pieces: list[np.ndarray]) -> list[np.ndarray]:
             end = int(partner[end ^ 1])
             piece = end // 2
         found.append(np.vstack(parts))
+        if without_area(found[-1]):
+            x, y, z = found[-1][0]
+            raise Problem(f"{path}: a closed curve without area begins at ({x:.6g} {y:.6g} {z:.6g})")
     return sorted(found, key=lambda points: -float(np.ptp(points, axis=0).max()))
+
+
+def without_area(points: np.ndarray) -> bool:
+    """Tell whether a closed curve has fewer than three points, or lies in a plane and has no area."""
+    if len(points) < 3:
+        return True
+    to = points - points.mean(axis=0)
+    scatter = np.linalg.svd(to, compute_uv=False)
+    area = 0.5 * np.linalg.norm(np.cross(to, np.roll(to, -1, axis=0)).sum(axis=0))
+    closed = np.vstack([points, points[:1]])
+    return bool(scatter[2] <= PLANE * scatter[0] and area <= NO_AREA * length_of(closed)**2)
 
 
 def write_curves(target: Path, curves: Sequence[np.ndarray], source: object) -> None:
@@ -140,7 +180,7 @@ def main(words: Sequence[str] | None = None) -> None:
     if options.layer and not dxf:
         parser.error("--layer: only of a DXF file")
     account = Account()
-    pieces = pieces_of_dxf(options.file, options.chord, options.layer, sampled, account) if dxf else pieces_of_cad(
+    pieces = pieces_of_dxf(options.file, options.chord, options.layer, account) if dxf else pieces_of_cad(
         options.file, options.chord, account)
     if not pieces:
         say_left_out(account)

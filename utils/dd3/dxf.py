@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reader of the curves of DXF files: lines, arcs, polylines and splines, of inserted blocks too."""
 import logging
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -11,16 +11,16 @@ from scipy.interpolate import BSpline, CubicSpline
 
 from dd3.account import Account, Entry
 from dd3.errors import Problem
+from dd3.pieces import SAME, Value, points_only, repeated, sampled
 
 CURVES = ("LINE", "ARC", "CIRCLE", "ELLIPSE", "LWPOLYLINE", "POLYLINE", "SPLINE", "HELIX")
 SEGMENTS = 16  # cubic pieces of a quarter of a circle at least: 1e-7 of its radius from it
 DEEPEST, MOST = 32, 100_000  # blocks inside blocks; pieces of a file
 LARGEST, FINEST = 1e9, 1e-8  # coordinate; chord over the size of a curve
 CLOSED = 1  # flag of a spline
-SAME = 1e-9  # distance of equal points over the size of their curve
+FITTED, FRAME = 4, 16  # flags of a polyline with a spline, and of a vertex of its control frame
+NO_LENGTH, EQUAL = "of length 0", "equal to another one, which is used"
 NOT_A_CURVE = "not a curve that is read: " + ", ".join(CURVES)
-
-Sampled = Callable[[Callable[[np.ndarray], np.ndarray], float, float, float], np.ndarray]
 
 
 @dataclass
@@ -31,11 +31,11 @@ class Drawing:
     path: Path
     chord: float
     layer: str | None
-    sampled: Sampled
     account: Account
     lines: dict[str, int]
     entries: dict[Any, Entry] = field(default_factory=dict)
     pieces: list[np.ndarray] = field(default_factory=list)
+    owners: list[Entry] = field(default_factory=list)
     layers: set[str] = field(default_factory=set)
 
     def entry(self, entity: Any, where: str = "") -> Entry:
@@ -49,9 +49,17 @@ class Drawing:
             self.entries[key].leave(NOT_A_CURVE)
         return self.entries[key]
 
+    def leave(self, indices: list[int], why: str) -> None:
+        """Leave out pieces."""
+        for index in indices:
+            self.account.enter(self.owners[index].place, self.owners[index].name).leave(why)
+        left = set(indices)
+        self.pieces, self.owners = ([item for index, item in enumerate(items) if index not in left]  # type: ignore
+                                    for items in (self.pieces, self.owners))
 
-def pieces_of_dxf(path: Path, chord: float, layer: str | None, sampled: Sampled, account: Account) -> list[np.ndarray]:
-    """Return the curves of a DXF file, in mm, as points; `sampled` makes points of a function of a parameter."""
+
+def pieces_of_dxf(path: Path, chord: float, layer: str | None, account: Account) -> list[np.ndarray]:
+    """Return the curves of a DXF file, in mm, as points."""
     from ezdxf import units
     document = opened(path, account)
     try:
@@ -61,7 +69,7 @@ def pieces_of_dxf(path: Path, chord: float, layer: str | None, sampled: Sampled,
         raise Problem(f"{path}: $INSUNITS = {document.units} is not a unit of DXF") from None
     if not document.units:
         account.enter(str(path), "unit").leave("$INSUNITS names none: lengths are taken as mm")
-    drawing = Drawing(path, chord / scale, layer, sampled, account, lines_of(path))
+    drawing = Drawing(path, chord / scale, layer, account, lines_of(path))
     inserted: set[str] = set()
     try:
         walk(drawing, document.modelspace(), None, None, inserted, ())
@@ -72,6 +80,8 @@ def pieces_of_dxf(path: Path, chord: float, layer: str | None, sampled: Sampled,
         raise Problem(f"{path}: a damaged DXF file: {type(error).__name__}: {error}") from None
     if layer is not None and layer not in drawing.layers:
         raise Problem(f"{path}: no layer '{layer}'; there are: {' '.join(sorted(drawing.layers))}")
+    drawing.leave(points_only(drawing.pieces), NO_LENGTH)
+    drawing.leave(repeated(drawing.pieces, drawing.chord), EQUAL)
     return [scale * piece for piece in drawing.pieces]
 
 
@@ -148,6 +158,7 @@ def walk(drawing: Drawing, layout: Any, matrix: Any, layer: str | None, inserted
         if found:
             entry.use()
             drawing.pieces += found
+            drawing.owners += [entry] * len(found)
 
 
 def hidden(document: Any, layer: str) -> bool:
@@ -156,6 +167,16 @@ def hidden(document: Any, layer: str) -> bool:
         return False
     entry = document.layers.get(layer)
     return bool(entry.is_off() or entry.is_frozen())
+
+
+def unseen(drawing: Drawing, entity: Any, layer: str) -> str:
+    """Return why a reference of a block is not visible, if so: an off layer hides none of its entities on others."""
+    if entity.dxf.get("invisible", 0):
+        return "invisible"
+    layers = entity.doc.layers
+    if drawing.layer is None and layers.has_entry(layer) and layers.get(layer).is_frozen():
+        return f"layer {layer} is frozen; --layer takes what is in the block"
+    return ""
 
 
 def insert(drawing: Drawing, entity: Any, matrix: Any, layer: str, inserted: set[str], above: tuple[str, ...]) -> None:
@@ -171,6 +192,10 @@ def insert(drawing: Drawing, entity: Any, matrix: Any, layer: str, inserted: set
         return
     if name in above or len(above) > DEEPEST:
         raise Problem(f"{entry.place}: error: block {name} contains itself")
+    if why := unseen(drawing, entity, layer):
+        entry.leave(why)
+        drawing.layers |= {layer if one.dxf.layer == "0" else one.dxf.layer for one in block}
+        return
     entry.use()
     inserted.add(name)
     if XClip(entity).has_clipping_path:
@@ -204,13 +229,21 @@ def points_of(drawing: Drawing, entity: Any, matrix: Any, entry: Entry) -> Itera
         yield spline_points(drawing, entity, matrix, entry)
         return
     try:
-        line = paths.make_path(entity, segments=SEGMENTS)
+        line = paths.make_path(without_frame(entity), segments=SEGMENTS)
     except TypeError:  # a POLYLINE that is a mesh
         return
-    for part in (line if matrix is None else line.transform(matrix)).sub_paths():
+    entry.leave(NO_LENGTH)
+    for part in (line if matrix is None else line.transform(matrix)).sub_paths() if len(line) else ():
         control = finite(entry, np.array([tuple(point) for point in part.control_vertices()]))
         fine = FINEST * float(np.ptp(control, axis=0).max())
         yield np.array([tuple(point) for point in part.flattening(max(drawing.chord, fine))])
+
+
+def without_frame(entity: Any) -> Any:
+    """Return a curve without the control frame that CAD keeps with a polyline that a spline was fitted to, unseen."""
+    if entity.dxftype() == "POLYLINE" and entity.dxf.flags & FITTED:
+        entity.vertices[:] = [vertex for vertex in entity.vertices if not vertex.dxf.flags & FRAME]
+    return entity
 
 
 def finite(entry: Entry, points: np.ndarray) -> np.ndarray:
@@ -227,8 +260,8 @@ def spline_points(drawing: Drawing, entity: Any, matrix: Any, entry: Entry) -> n
     if fitted and len(entity.fit_points) < 2:
         raise Problem(f"{entry.place}: error: a SPLINE without control points")
     if fitted and closed:
-        value, low, high = through(finite(entry, moved(matrix, entity.fit_points)))
-        return finite(entry, drawing.sampled(value, low, high, drawing.chord))
+        value, places = through(finite(entry, moved(matrix, entity.fit_points)))
+        return finite(entry, sampled(value, places, drawing.chord))
     spline = entity.construction_tool() if fitted else None
     control = finite(entry, moved(matrix, entity.control_points if spline is None else spline.control_points))
     knots, given, degree = (entity.knots, entity.weights, entity.dxf.degree) if spline is None else (
@@ -236,8 +269,8 @@ def spline_points(drawing: Drawing, entity: Any, matrix: Any, entry: Entry) -> n
     weights = np.array(given, float) if len(given) else np.ones(len(control))
     if len(weights) != len(control) or not (weights > 0).all():
         raise Problem(f"{entry.place}: error: a SPLINE whose weights are not positive, one for each control point")
-    value, low, high = b_spline(entry, control, weights, np.array(knots, float), int(degree), closed)
-    return finite(entry, drawing.sampled(value, low, high, drawing.chord))
+    value, places = b_spline(entry, control, weights, np.array(knots, float), int(degree), closed)
+    return finite(entry, sampled(value, places, drawing.chord))
 
 
 def moved(matrix: Any, points: Any) -> np.ndarray:
@@ -247,8 +280,8 @@ def moved(matrix: Any, points: Any) -> np.ndarray:
     return np.array([tuple(point) for point in (matrix.transform_vertices(vectors) if matrix else vectors)], float)
 
 
-def through(fit: np.ndarray) -> tuple[Callable[[np.ndarray], np.ndarray], float, float]:
-    """Return a closed cubic spline through fit points, and the ends of its parameter, the length of the chords."""
+def through(fit: np.ndarray) -> tuple[Value, np.ndarray]:
+    """Return a closed cubic spline through fit points, and places of its parameter, the length of the chords."""
     size = float(np.ptp(fit, axis=0).max())
     fit = fit[np.append(True, np.linalg.norm(np.diff(fit, axis=0), axis=1) > SAME * size)]
     if np.linalg.norm(fit[0] - fit[-1]) > SAME * size:
@@ -256,13 +289,20 @@ def through(fit: np.ndarray) -> tuple[Callable[[np.ndarray], np.ndarray], float,
     fit[-1] = fit[0]
     length = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(fit, axis=0), axis=1))))
     if len(fit) < 4:
-        return lambda t: np.column_stack([np.interp(t, length, column) for column in fit.T]), 0.0, float(length[-1])
-    return CubicSpline(length, fit, bc_type="periodic"), 0.0, float(length[-1])
+        return lambda t: np.column_stack([np.interp(t, length, column) for column in fit.T]), spans(length, 1)
+    return CubicSpline(length, fit, bc_type="periodic"), spans(length, 3)
+
+
+def spans(knots: np.ndarray, degree: int) -> np.ndarray:
+    """Return places that divide each span between knots into one part more than the degree."""
+    knots = np.unique(knots)
+    parts = np.arange(degree + 1) / (degree + 1)
+    return np.append((knots[:-1, None] + np.diff(knots)[:, None] * parts).ravel(), knots[-1])
 
 
 def b_spline(entry: Entry, control: np.ndarray, weights: np.ndarray, knots: np.ndarray, degree: int, closed: bool
-             ) -> tuple[Callable[[np.ndarray], np.ndarray], float, float]:
-    """Return a B-spline and the ends of its parameter. One that is closed repeats its first control points at the end,
+             ) -> tuple[Value, np.ndarray]:
+    """Return a B-spline and places of its parameter. One that is closed repeats its first control points at the end,
     in the file or, where its ends do not meet, here."""
     count = len(control)
     if not 1 <= degree < max(count, 2) or (not closed and len(knots) not in (0, count + degree + 1)):
@@ -285,7 +325,7 @@ def b_spline(entry: Entry, control: np.ndarray, weights: np.ndarray, knots: np.n
     def value(t: np.ndarray) -> np.ndarray:
         points = curve(t)
         return np.asarray(points[:, :3] / points[:, 3:])
-    return value, float(knots[degree]), float(knots[len(homogeneous)])
+    return value, spans(knots[degree:len(homogeneous) + 1], degree)
 
 
 def meets(homogeneous: np.ndarray, knots: np.ndarray, degree: int) -> bool:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from dd3.curve import joined, sampled
+from dd3.curve import edge_points, joined
 from dd3.part.loops import find_loops, find_notches, hole_of
 from dd3.part.shape import Shape
 from dd3.tools.faces import spans
@@ -70,10 +70,5 @@ def curves_of(gmsh: Any, path: Path, shape: Shape, faces: list[int]) -> list[np.
     for i, loop in enumerate(find_loops(shape, faces)):
         if i and hole_of(shape, loop).name in FORMED:
             continue
-        pieces = []
-        for edge in loop.edges:
-            (low,), (high,) = gmsh.model.getParametrizationBounds(1, edge)
-            pieces.append(sampled(lambda t, edge=edge: np.reshape(  # type: ignore[misc]
-                gmsh.model.getValue(1, edge, t), (-1, 3)), low, high, CHORD))
-        found += joined(path, pieces)
+        found += joined(path, [edge_points(gmsh, edge, CHORD) for edge in loop.edges])
     return found
