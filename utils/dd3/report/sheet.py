@@ -129,6 +129,8 @@ def add_springback(report: Report) -> None:
     """Add the free shape against the drawn one: map of the distances, sections over one another, angles and twist."""
     found = springback.find(report.sheet, report.job["phases"], report.mirror)
     if found is None:
+        if said := springback.unfinished(report.job["phases"]):
+            report.add("Springback", f"<p>Not judged: {said}.</p>")
         return
     figure, axes = new_figure((8, 4))
     rows: list[tuple[str, Any]] = []
