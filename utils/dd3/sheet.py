@@ -113,9 +113,7 @@ class Sheet(Fields):
             lines = [self.edge_line(line, height) for line in chains(crossed(around, height))]
             if lines:
                 return sorted(lines, key=lambda line: -length(line.at(points))[-1])
-        place = points @ np.asarray(normal, float)
-        raise Problem(f"{self.path}: the plane {plane_name(normal, distance)} does not cut the sheet, which has "
-                      f"{place.min():.4g} to {place.max():.4g} there")
+        raise Problem(f"{self.path}: the plane {plane_name(normal, distance)} does not cut the sheet")
 
     @staticmethod
     def edge_line(edges: Sequence[tuple[int, int]], height: np.ndarray) -> Line:
@@ -177,8 +175,8 @@ def plane(text: str) -> tuple[np.ndarray, float]:
         raise Problem(f"plane '{text}': expected such as y=0, or an angle in degrees") from None
 
 
-def plane_name(normal: Sequence[float] | np.ndarray, distance: float) -> str:
-    """Return a plane as `plane` takes it, or by its normal and distance."""
+def plane_name(normal: np.ndarray, distance: float) -> str:
+    """Return a plane as `plane` takes it, or its normal and distance."""
     axis = int(np.abs(normal).argmax())
     if np.allclose(normal, np.eye(3)[axis]):
         return f"{AXES[axis]}={distance:.6g}"

@@ -18,6 +18,7 @@ from dd3.plot.figures import save
 from dd3.programs import made_folder
 from dd3.run import check_limits, planes_of, read_frame
 from dd3.sheet import AXES, Sheet, plane
+from dd3.springback import ROUND_OFF
 from dd3.tables import tools_in
 from dd3.viewer import page as interactive
 
@@ -134,14 +135,22 @@ def section_planes(report: Report) -> list[str]:
     return [text for text in planes if cuts(report.sheet, text)]
 
 
+def upwards(planes: Sequence[str]) -> str:
+    """Return the name of the upper coordinate in the planes of sections, those of `in_plane`."""
+    across = [text for text in planes if text.strip().startswith("z")]
+    return "z (mm)" if not across else "y (mm)" if len(across) == len(planes) else "z, in planes across z y (mm)"
+
+
 def faced(report: Report) -> str:
     """Return the axis that the whole sheet faces at the start: z, unless its projection along another one is more than
     twice as large as both others."""
     points, faces = report.sheet.points(0), report.sheet.faces(True, 0)
     across = points[faces[:, 2:]] - points[faces[:, :2]]
-    area = np.abs(np.cross(across[:, 0], across[:, 1]).sum(axis=0))
+    areas = np.cross(across[:, 0], across[:, 1])
+    area = np.abs(areas.sum(axis=0))
     area[[axis in report.mirror for axis in "xy"] + [False]] = 0.0  # those of the images are opposite
-    return AXES[area.argmax()] if area.max() > 2 * np.sort(area)[1] else "z"
+    least = max(2 * np.sort(area)[1], ROUND_OFF * np.linalg.norm(areas, axis=1).sum())
+    return AXES[area.argmax()] if area.max() > least else "z"
 
 
 def cuts(sheet: Sheet, text: str) -> bool:
