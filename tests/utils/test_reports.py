@@ -310,7 +310,7 @@ def test_first_increment(run, tmp_path, tools):
     """Check the page of a run that stops in the first increment of a later phase, or makes it."""
     draw, second = DRAW, {**DRAW, "number": 2, "name": "second", "result": {"state": "stopped", "progress": 0}}
     if not tools:
-        draw, second = {**draw, "tools": []}, {**second, "tools": []}
+        draw, second = ({**phase, "tools": [], "unload": False} for phase in (draw, second))
         names = HISTORY.splitlines()[1].split(",")
         kept = [i for i, name in enumerate(names) if not name.startswith(("punch", "rib"))]
         (run / "history.csv").write_text("".join(",".join(line.removeprefix("# units: ").split(",")[i] for i in kept)
