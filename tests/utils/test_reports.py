@@ -15,8 +15,11 @@ from helpers import call, write_run
 from dd3.errors import Problem
 from dd3.forming_limit_curve import ZONES, Curve, keeler_brazier, read_curve
 from dd3.report.course import action
-from dd3.sheet import Sheet
-from dd3.springback import best_fit, find, opening, rotation, symmetry, twist
+from dd3.report.page import Report, section_planes
+from dd3.run import Run
+from dd3.scatter.results import field_map
+from dd3.sheet import Sheet, plane_name
+from dd3.springback import best_fit, find, opening, rotation, symmetry, twist, unfinished
 from dd3.surface_strain import cell_strains
 
 # Parts of the profile: length along it and turn. The wall is an arc of radius 100 mm.
@@ -98,7 +101,7 @@ def test_section(run, tmp_path):
             assert abs(float(row["thickness"]) - 1 + float(row["x0"]) / 1000) < 1e-6, row
     call("section", run, "--nodes", 1, 2, 3, "--table", tmp_path / "s.csv", "--output", tmp_path / "s.svg")
     assert len((tmp_path / "s.csv").read_text().splitlines()) == 4
-    for words, said in ((("--plane", "y=50"), "does not cut the sheet"), (("--plane", "q=1"), "plane 'q=1'"),
+    for words, said in ((("--plane", "y=50"), "the plane y=50 does not cut the sheet"), (("--plane", "q=1"), "plane 'q=1'"),
                         (("--nodes", 1, 9999), "the nodes are 1 to"), (("--field", "nosuch"), "no field 'nosuch'"),
                         (("--wall", 0, 1), "expected 3 or more"), (("--flange", 0, 1), "need --wall")):
         assert said in call("section", run, *words, "--output", tmp_path / "s.png", expect=2), words
@@ -295,6 +298,59 @@ def test_numbers_of_the_report(run, tmp_path):
                                "wall-clock time": "1.5 s", "material": "1 s 100 %"}
 
 
+def changed(run, **members):
+    """Change members of the description of a run; return it as it was."""
+    job = json.loads((run / "run.json").read_text())
+    (run / "run.json").write_text(json.dumps({**job, **members}))
+    return job
+
+
+@pytest.mark.parametrize("tools", [True, False])
+def test_first_increment(run, tmp_path, tools):
+    """Check the page of a run that stops in the first increment of a later phase, or makes it."""
+    draw, second = DRAW, {**DRAW, "number": 2, "name": "second", "result": {"state": "stopped", "progress": 0}}
+    if not tools:
+        draw, second = ({**phase, "tools": [], "unload": False} for phase in (draw, second))
+        names = HISTORY.splitlines()[1].split(",")
+        kept = [i for i, name in enumerate(names) if not name.startswith(("punch", "rib"))]
+        (run / "history.csv").write_text("".join(",".join(line.removeprefix("# units: ").split(",")[i] for i in kept)
+                                                 + "\n" for line in HISTORY.splitlines()[1:]))
+    (run / "status.csv").write_text(STATUS + "second,2,failed,10,0,r_max\n")
+    changed(run, phases=[draw, second], outcome={"state": "stopped", "message": "no convergence"})
+    said = call("report", run, "--verdict", "--output", tmp_path / "report", expect=1)
+    assert "run: not good: no convergence" in said
+    rows = rows_of(tmp_path / "report" / "report.html")["Phase 2: second"]
+    assert rows["ends"] == "stopped in its first increment" and rows["increments"].startswith("0, ")
+    assert not (tmp_path / "report" / "force_second.png").exists()
+    assert (tmp_path / "report" / "force_draw.png").exists() == tools
+    changed(run, phases=[draw, {**second, "result": {"state": "running", "progress": 0}}])
+    call("report", run, "--output", tmp_path / "report")
+    assert rows_of(tmp_path / "report" / "report.html")["Phase 2: second"]["ends"] == "in its first increment"
+
+
+def test_continued(run, tmp_path):
+    """Check that the page of a continued run has warnings and times of its earlier parts, without what a restart gives
+    up or repeats."""
+    near = {"code": "W009", "text": "long elements", "at": None, "phase": None, "increment": None}
+    deep = {"code": "W109", "text": "in phase 'draw' a tool entered", "at": None, "phase": "draw", "increment": 3}
+    lost = {"code": "W120", "text": "given up", "at": None, "phase": "draw", "increment": 4}
+    last = {"code": "W121", "text": "a support", "at": None, "phase": "draw", "increment": 5}
+    job = changed(run)
+    first = {**job, "warnings": [near, deep], "seconds": 100, "sections": {"material": 60, "output": 20}}
+    second = {**job, "warnings": [near, deep, lost], "seconds": 10, "sections": {"material": 5, "output": 1},
+              "continued": {"increment": 3, "earlier": first}}
+    changed(run, warnings=[near, last], seconds=1, sections={"material": 0.5},
+            continued={"increment": 3, "earlier": second})
+    call("report", run, "--output", tmp_path / "report")
+    page = tmp_path / "report" / "report.html"
+    found = re.search("<ul class=warn>(.*?)</ul>", page.read_text())[1]
+    assert re.findall("<li>(.*?)</li>", found) == ["long elements", "in phase &#x27;draw&#x27; a tool entered", "a support"]
+    sections = rows_of(page)
+    assert len(re.findall("W109: ", page.read_text())) == 1 and "W121: a support" in page.read_text()
+    assert sections["Run"]["wall-clock time"] == "111 s"
+    assert sections["Run"]["material"] == "65.5 s 76 %" and sections["Run"]["output"] == "21 s 24 %"
+
+
 def test_places(run):
     """Check the steps that travels and phases name, and those that are not there."""
     sheet = Sheet(run)
@@ -378,8 +434,44 @@ def test_springback(tmp_path):
     assert rows["mean distance over the area"] == f"{mean:.4g} mm"
     assert rows["twist about x from 10 to 90 % of the length"] == "+1.6 degrees"
     assert rows["section x=10"].startswith("turned by +0.5 degrees; its ends against that by "), rows
+    # A release that has not ended is none, one that ends by `until` is.
+    for state, progress, words in (("interrupted", 0.1, "the release ended at 10 %"), ("ended", 0.4, ""),
+                                   ("running", 0.5, "the release is at 50 %"),
+                                   ("pending", None, "the release has not begun")):
+        phases = [DRAW, {**RELEASED, "result": {"state": state, "progress": progress}}]
+        assert unfinished(phases) == words and (find(sheet, phases) is None) == bool(words)
+    assert find(sheet, [DRAW, RELEASED, {**DRAW, "result": {"state": "pending"}}]) is None
+    assert unfinished([DRAW]) == "" and unfinished([{**RELEASED, "result": {"state": "stopped"}}]) == ""
+    changed(folder, phases=[DRAW, {**RELEASED, "result": {"state": "interrupted", "progress": 0.1}}],
+            outcome={"state": "interrupted", "message": "interrupted"})
+    with pytest.raises(Problem, match="no springback, as the release ended at 10 %"):
+        field_map(folder, "springback", [])
+    said = "springback: not judged: the release ended at 10 %"
+    assert said in call("report", folder, "--verdict", "--output", tmp_path / "report", expect=1)
+    text = (tmp_path / "report" / "report.html").read_text()
+    assert "<h2>Springback</h2>\n<p>Not judged: the release ended at 10 %.</p>" in text
+    assert said in [": ".join(item) for item in Run(folder).verdict()]
     # A run that only releases a sheet of another one takes it over in its drawn shape.
     taken_over = [{"number": number, "name": name, "unload": True, "tools": []} for number, name in enumerate("ab", 1)]
     assert np.allclose(find(sheet, taken_over).distance(), distance)
     assert find(sheet, [{**taken_over[0], "unload": False}]) is None
     assert find(sheet, [DRAW, {**RELEASED, "tools": [PUNCH]}]) is None and twist(sheet, found._replace(mirror=["x"])) is None
+
+
+def test_standing(tmp_path):
+    """Check the sections of the page of a sheet that stands across y, by default and by name."""
+    start, stretched = (shape[:, [0, 2, 1]] * [1, -1, 1] for shape in bar(lambda x, y, z: (1.1 * x, y, z)))
+    nodes = np.arange(len(start)).reshape(41, 5, 2)
+    cells = [[nodes[i + a, j + b, k] for k in (0, 1) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))]
+             for i in range(40) for j in range(4)]
+    one = np.ones(len(start))
+    fields = {"thickness": (one, one), **{name: (0 * one, 0 * one) for name in (
+        "thinning", "draw_in", "equivalent_plastic_strain", "major_strain_middle", "minor_strain_middle")}}
+    folder = write_run(tmp_path / "bar.out", start, stretched, cells, HISTORY, STATUS, fields, phases=[DRAW])
+    page = Path(call("report", folder).strip())
+    assert "Thickness along sections" in page.read_text()
+    assert section_planes(Report(folder)) == ["z=0", "x=0"]
+    assert section_planes(Report(folder, mirror=["y"])) == ["x=0"]  # y=0 lies between the faces
+    assert "the plane z=30 does not cut the sheet" in call("report", folder, "--section", "z=30", expect=2)
+    assert plane_name(np.array([-0.5, math.sqrt(0.75), 0]), 0.0) == "at 30 degrees"
+    assert plane_name(np.array([0, 0.6, 0.8]), 1.5) == "with the normal 0 0.6 0.8 at 1.5 mm"

@@ -80,6 +80,23 @@ def test_other_runs():
     assert answers(continued)["formed to the tools"] == BAD
 
 
+def test_continued():
+    """Check the limits of materials by warnings before a restart, and phases that a restart makes again."""
+    for code, question in (("W126", "fracture"), ("W127", "forming limit of bent paths")):
+        warning = {"code": code, "text": "reached", "phase": "draw", "increment": 5}
+        for increment, answer in ((5, BAD), (4, None)):  # given up by a restart before it
+            job = {**job_of(), "continued": {"increment": increment, "earlier": {**job_of(), "warnings": [warning]}}}
+            assert answers(job).get(question) == answer
+    punch = {"tool": "punch", "path_left": place(0.1), "off_tools": place(0.02), "off_walls": None, "wall_space": 0.0}
+    earlier = job_of(punch, codes=["W119"])
+    earlier["phases"][0]["result"]["last_increment"] = earlier["warnings"][0]["increment"] = 9
+    for increment, later, expected in ((9, {**job_of(), "phases": []}, [BAD]), (9, job_of(punch), [BAD]),
+                                       (8, job_of(punch), [GOOD])):
+        items = judge({**later, "continued": {"increment": increment, "earlier": earlier}}, None, [], [])
+        assert [item.answer for item in items if item.name == "formed to the tools"] == expected
+    assert [sprung(None, None, "half")[0].text, sprung(None, 0.4, "half")[0].answer] == ["half", OPEN]
+
+
 def report(program, folder, name, deck, *options):
     """Run a variant of the pan; return the closing of its draw and what its report prints."""
     path = folder / f"{name}.dat"

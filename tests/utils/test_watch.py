@@ -16,7 +16,7 @@ from viewer_run import HISTORY, STATUS, viewed_run
 
 from dd3.run import read_frame, read_job
 from dd3.view import is_old
-from dd3.watch import clock, line_of
+from dd3.watch import Watch, clock, line_of
 
 
 def halted(folder, state, rows=3):
@@ -67,6 +67,20 @@ def test_ends(tmp_path):
     assert "No such folder" in call("watch", tmp_path / "none.out", expect=2)
     assert "go with --page" in call("watch", run, "--mirror", "x", expect=2)
     assert "No such folder" in call("view", tmp_path / "none.out", expect=2)
+
+
+def test_page_of_a_stop(tmp_path, monkeypatch):
+    """Check the page of a run that stops in the first increment of its second phase, and that it is made again at the
+    end of a run, though no step is new."""
+    run = viewed_run(tmp_path / "strip.out")
+    halted(run, "stopped", 2)
+    call("watch", run, "--page", expect=1)
+    assert "stopped in its first increment" in (run / "report" / "report.html").read_text()
+    watch, made = Watch(run, page={"run": run}), []
+    monkeypatch.setattr("dd3.report.make", lambda run: made.append(run))
+    for ended in (False, False, True, True):
+        watch.draw(ended)
+    assert len(made) == 2
 
 
 def test_view(tmp_path, monkeypatch):

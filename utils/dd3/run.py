@@ -2,6 +2,7 @@
 """A run of dd3imp by its folder: tables, fields, and the description of the job."""
 
 import json
+import math
 import re
 from collections.abc import Sequence
 from functools import cached_property
@@ -150,14 +151,16 @@ class Run:
         """
         from dd3 import forming_limit, verdict
         from dd3.sheet import Sheet
+        from dd3.springback import unfinished
         check_limits(waves, tolerance)
         sheet, limit = Sheet(self.folder), forming_limit.Criteria(**criteria)
         limits = forming_limit.find_limits(sheet, self.job, limit)
         strains = forming_limit.strains_of(sheet, sheet.last, "middle")
         found, sprung = forming_limit.judge(strains, limits, limit.margin), self.springback(mirror)
+        distance = float(sprung.distance().max()) if sprung else None
         splits = verdict.splits(found.critical, found.said, strains.largest_thinning() > limits.thinning)
         return verdict.judge(self.job, waves, splits,
-                             verdict.sprung(float(sprung.distance().max()) if sprung else None, tolerance))
+                             verdict.sprung(distance, tolerance, unfinished(self.job["phases"])))
 
 
 def planes_of(mirror: Sequence[str]) -> list[str]:
@@ -208,6 +211,23 @@ def read_job(folder: Path) -> dict[str, Any]:
     if job.get("outcome", {}).get("state") == "running" and not is_held(folder / "job.log"):
         job["outcome"]["state"] = "killed"
     return job
+
+
+def parts_of(job: dict[str, Any]) -> list[tuple[dict[str, Any], float]]:
+    """Return the descriptions of a run and of those that it continues, the first one first, each with the increment
+    from which the later ones go on; infinite for the last one."""
+    found = [(job, math.inf)]
+    while earlier := (found[0][0].get("continued") or {}).get("earlier"):
+        found.insert(0, (earlier, min(found[0][1], found[0][0]["continued"].get("increment", math.inf))))
+    return found
+
+
+def warnings_of(job: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return the warnings of a run and of those that it continues, without those of increments that a restart gives up,
+    and once those that it repeats."""
+    found = {(warning["code"], warning["phase"], warning.get("text")): warning for part, end in parts_of(job)
+             for warning in part["warnings"] if (warning.get("increment") or 0) <= end}
+    return list(found.values())
 
 
 def files_of(job: dict[str, Any]) -> list[Path]:

@@ -113,7 +113,7 @@ class Sheet(Fields):
             lines = [self.edge_line(line, height) for line in chains(crossed(around, height))]
             if lines:
                 return sorted(lines, key=lambda line: -length(line.at(points))[-1])
-        raise Problem(f"{self.path}: the plane does not cut the sheet")
+        raise Problem(f"{self.path}: the plane {plane_name(normal, distance)} does not cut the sheet")
 
     @staticmethod
     def edge_line(edges: Sequence[tuple[int, int]], height: np.ndarray) -> Line:
@@ -173,6 +173,16 @@ def plane(text: str) -> tuple[np.ndarray, float]:
         return np.array([-np.sin(angle), np.cos(angle), 0.0]), 0.0
     except ValueError:
         raise Problem(f"plane '{text}': expected such as y=0, or an angle in degrees") from None
+
+
+def plane_name(normal: np.ndarray, distance: float) -> str:
+    """Return a plane as `plane` takes it, or its normal and distance."""
+    axis = int(np.abs(normal).argmax())
+    if np.allclose(normal, np.eye(3)[axis]):
+        return f"{AXES[axis]}={distance:.6g}"
+    if distance == 0.0 and normal[2] == 0.0:
+        return f"at {np.degrees(np.arctan2(-normal[0], normal[1])):.6g} degrees"
+    return f"with the normal {' '.join(f'{x:.4g}' for x in normal)} at {distance:.6g} mm"
 
 
 def in_plane(points: np.ndarray, normal: np.ndarray) -> np.ndarray:

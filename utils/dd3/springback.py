@@ -97,12 +97,32 @@ def steps_with_tools(sheet: Sheet, phases: Sequence[dict]) -> np.ndarray:
     return np.flatnonzero(np.isin(np.array(of_step[: sheet.count]), held))
 
 
+def state_of(phase: dict) -> str:
+    """Return the state of a phase, ended where run.json does not tell."""
+    return str(phase.get("result", {}).get("state", "ended"))
+
+
+def unfinished(phases: Sequence[dict]) -> str:
+    """Return words on a release, the last phase of a run, that has not ended; none without one, or where it has ended.
+
+    phases: those of run.json.
+    """
+    held = [any(tool["active"] for tool in phase["tools"]) for phase in phases]
+    if held[-1] or not (any(held) or phases[0].get("unload")):
+        return ""
+    progress = f"{100 * (phases[-1].get('result', {}).get('progress') or 0.0):.3g} %"
+    return {"ended": "", "pending": "the release has not begun", "running": f"the release is at {progress}"}.get(
+        state_of(phases[-1]), f"the release ended at {progress}")
+
+
 def find(sheet: Sheet, phases: Sequence[dict], mirror: Sequence[str] = ()) -> Springback | None:
-    """Return the springback of a run whose last phase releases all tools; None for another one. A run that only
-    releases a sheet of another one takes that over in its drawn shape.
+    """Return the springback of a run whose last phase releases all tools and has ended; None for another one. A run
+    that only releases a sheet of another one takes that over in its drawn shape.
 
     phases: those of run.json. mirror: planes of symmetry of the model beside those on which its supports keep it.
     """
+    if not phases or state_of(phases[-1]) != "ended":
+        return None
     drawn = steps_with_tools(sheet, phases)
     if not drawn.size and phases[0]["unload"]:
         drawn = np.array([0])

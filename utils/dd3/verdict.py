@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Verdict on a formed part: whether the sheet is formed to the tools, splits, waves, springs back too far."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from dd3.fields import LIMITED
+from dd3.run import parts_of, warnings_of
 
 THINNING = 0.25  # largest thinning where no limit is given
 GOOD, BAD, DOUBTFUL, OPEN = "good", "not good", "doubtful", "not judged"
@@ -30,16 +31,17 @@ class Ended(NamedTuple):
     codes: set[str]
 
 
-def ended_phases(job: dict[str, Any]) -> Iterator[Ended]:
-    """Return the phases of a run with what they tell of the sheet between the tools, also those before a restart."""
-    earlier = (job.get("continued") or {}).get("earlier")
-    if earlier:
-        yield from ended_phases(earlier)
-    for phase in job["phases"]:
-        closing = phase.get("result", {}).get("closing")
-        if closing:
-            yield Ended(phase["name"], closing, {warning["code"] for warning in job["warnings"]
-                                                 if warning["phase"] == phase["name"]})
+def ended_phases(job: dict[str, Any]) -> list[Ended]:
+    """Return the phases of a run with what they tell of the sheet between the tools, also those before a restart, but
+    for those that it makes again."""
+    found, warnings = {}, warnings_of(job)
+    for part, end in parts_of(job):
+        for phase in part["phases"]:
+            name, result = phase["name"], phase.get("result", {})
+            if result.get("closing") and (result.get("last_increment") or 0) <= end:
+                found[name] = Ended(name, result["closing"], {warning["code"] for warning in warnings
+                                                              if warning["phase"] == name})
+    return list(found.values())
 
 
 def at(place: dict[str, Any]) -> str:
@@ -62,7 +64,7 @@ def limits_of_material(job: dict[str, Any], phases: Sequence[Ended]) -> list[Ite
     items = []
     for name, (question, code, value) in REACHED.items():
         found = [reached for phase in phases if (reached := phase.closing.get(name))]
-        first = [str(warning["text"]) for warning in job["warnings"] if warning["code"] == code]
+        first = [str(warning["text"]) for warning in warnings_of(job) if warning["code"] == code]
         if found:
             items.append(Item(question, BAD if first or found[-1]["value"] >= 1 else GOOD,
                               f"largest {value} {found[-1]['value']:.3g}, {at(found[-1])}; 1 is the limit"))
@@ -170,10 +172,12 @@ def splits(critical: int | None, said: Sequence[str], thinned: bool) -> list[Ite
     return [Item("forming limit", answer, said[0]), Item("thinning", BAD if thinned else GOOD, said[1])]
 
 
-def sprung(distance: float | None, tolerance: float | None) -> list[Item]:
-    """Judge the springback by its tolerance; distance: the largest one from the drawn shape, None without a release."""
+def sprung(distance: float | None, tolerance: float | None, unfinished: str = "") -> list[Item]:
+    """Judge the springback by its tolerance; distance: the largest one from the drawn shape, None without a release
+    that has ended; unfinished: words on one that has not."""
     if distance is None:
-        return [Item("springback", OPEN, "the run does not release the sheet")] if tolerance is not None else []
+        said = unfinished or (tolerance is not None and "the run does not release the sheet")
+        return [Item("springback", OPEN, said)] if said else []
     answer = OPEN if tolerance is None else BAD if distance > tolerance else GOOD
     text = f"up to {distance:.3g} mm from the drawn shape"
     return [Item("springback", answer, text + limit_text("--tolerance", tolerance))]
@@ -185,7 +189,7 @@ def judge(job: dict[str, Any], waves: float | None, limits: Sequence[Item], spri
     waves: largest height under a holder and in walls, mm. limits, springback: items of `splits`, of `sprung` and the
     fixture.
     """
-    phases = list(ended_phases(job))
+    phases = ended_phases(job)
     return [end_of_run(job), *limits_of_material(job, phases), *formed(phases, waves), *slides(phases),
             *holders(phases, waves), *limits, *springback, *supports(phases), *pins(phases)]
 

@@ -66,12 +66,12 @@ def leader_of(history: pd.DataFrame, phase: str) -> str | None:
 
 class Watch:
     """A run that is watched: its folder, seconds between two looks, what is written of its steps (a picture in a style,
-    the page with settings of `report.make`), and how many steps there were."""
+    the page with settings of `report.make`), and what of it: how many steps, of a run that has ended or not."""
 
     def __init__(self, folder: Path, every: float = 2.0, picture: Path | None = None,
                  style: pictures.Style | None = None, page: dict[str, Any] | None = None) -> None:
         self.folder, self.every, self.picture, self.style, self.page = folder, every, picture, style, page
-        self.steps, self.said = 0, ""
+        self.drawn, self.said = (0, False), ""
         self.live = sys.stdout.isatty()
 
     def tell(self, text: str) -> None:
@@ -96,15 +96,15 @@ class Watch:
             self.tell(f"{folder}: has begun")
         return job
 
-    def draw(self) -> None:
-        """Draw the sheet, or write the page, where there is a new step."""
-        if not (self.picture or self.page) or (count := Fields(self.folder).count) == self.steps:
+    def draw(self, ended: bool) -> None:
+        """Draw the sheet, or write the page, where there is a new step or the run has ended."""
+        if not (self.picture or self.page) or (now := (Fields(self.folder).count, ended)) == self.drawn:
             return
         if self.page:
             report.make(**self.page)
         if self.picture:
             pictures.make_picture(pictures.Run(self.folder), self.style or pictures.Style(), self.picture)
-        self.steps = count
+        self.drawn = now
 
     def follow(self) -> dict[str, Any]:
         """Watch the run to its end and return its description."""
@@ -112,7 +112,7 @@ class Watch:
             job = self.look()
             ended = job is not None and job["outcome"]["state"] != "running"
             try:
-                self.draw()
+                self.draw(ended)
             except (Problem, OSError, KeyError, ValueError):
                 if ended:
                     raise

@@ -83,7 +83,7 @@ def borders(x: np.ndarray, y: np.ndarray, values: np.ndarray) -> list[Border]:
 
 def wave_heights(job: dict[str, Any]) -> tuple[float, float]:
     """Return the largest height of waves under holders at the end of the forming, and of those in walls, mm."""
-    phases = list(ended_phases(job))
+    phases = ended_phases(job)
     last = {holder["tool"]: holder["wave"] for phase in phases for holder in phase.closing["holders"]}
     walls = [2 * punch["off_walls"]["distance"] for phase in phases for punch in phase.closing["punches"]
              if punch["off_walls"]]

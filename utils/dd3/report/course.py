@@ -12,8 +12,9 @@ from dd3 import verdict
 from dd3.plot import force as forces
 from dd3.plot.figures import new_figure
 from dd3.report.page import Report, columns, table
-from dd3.run import read_frame
+from dd3.run import parts_of, read_frame, warnings_of
 from dd3.sheet import AXES
+from dd3.springback import unfinished
 
 
 def add_summary(report: Report) -> None:
@@ -37,7 +38,8 @@ def add_summary(report: Report) -> None:
 def add_verdict(report: Report) -> None:
     """Add what is good and what is not."""
     report.verdict = verdict.judge(report.job, report.waves, report.splits,
-                                   [*verdict.sprung(report.sprung, report.tolerance), *report.deviations])
+                                   [*verdict.sprung(report.sprung, report.tolerance, unfinished(report.job["phases"])),
+                                    *report.deviations])
     rows = "".join(f'<tr><th>{html.escape(item.name)}</th><td class="answer"><span class="key" style="background:'
                    f'{verdict.COLOURS[item.answer]}"></span>{item.answer}</td><td>{html.escape(item.text)}</td></tr>'
                    for item in report.verdict)
@@ -54,7 +56,7 @@ def add_phases(report: Report) -> None:
         if attempts.empty:
             continue
         content = table(phase_rows(report, phase, attempts))
-        if report.tools and any(tool["active"] for tool in phase["tools"]):
+        if name in set(report.history["phase"]) and any(tool["active"] for tool in phase["tools"]):
             content = force_figure(report, name) + content
         report.add(f"Phase {phase['number']}: {name}", content)
 
@@ -63,19 +65,24 @@ def phase_rows(report: Report, phase: dict[str, Any], attempts: pd.DataFrame) ->
     """Return the rows of the table of a phase."""
     name, accepted = phase["name"], attempts[attempts["outcome"] == "accepted"]
     limiters = accepted["limiter"].value_counts()
-    warnings = [f"{warning['code']}: {warning['text']}" for warning in report.job["warnings"]
+    warnings = [f"{warning['code']}: {warning['text']}" for warning in warnings_of(report.job)
                 if warning["phase"] == name]
     rows: list[tuple[str, Any]] = [(tool["name"], action(tool)) for tool in phase["tools"]]
-    rows += [("driven by", phase["control"] or "the fraction of the phase"), ("ends", end_of_phase(report, name)),
+    rows += [("driven by", phase["control"] or "the fraction of the phase"), ("ends", end_of_phase(report, phase)),
              ("increments", f"{len(accepted)}, {int((attempts['outcome'] == 'retry').sum())} cut back; "
                             f"{int(attempts['iterations'].sum())} iterations"),
              ("limited by", ", ".join(f"{limiter} {count}" for limiter, count in limiters.items()))]
     return [*rows, *(("warning", warning) for warning in warnings)]
 
 
-def end_of_phase(report: Report, name: str) -> str:
+def end_of_phase(report: Report, phase: dict[str, Any]) -> str:
     """Return where a phase ends: its travel and progress."""
-    rows = forces.rows_of(report.history, [name])
+    if phase["name"] not in set(report.history["phase"]):  # no increment of it is accepted, or recorded
+        result = phase.get("result", {})
+        if result.get("progress"):
+            return f"at {100 * result['progress']:.4g} %"
+        return "in its first increment" if result.get("state") == "running" else "stopped in its first increment"
+    rows = forces.rows_of(report.history, [phase["name"]])
     travel = report.column("travel")[rows]
     part = f"{100 * report.column('progress')[rows[-1]]:.4g} %"
     return f"at a travel of {travel[-1] - travel[0]:.4g} mm, {part}" if np.ptp(travel) > 0 else f"at {part}"
@@ -144,7 +151,7 @@ def add_beads(report: Report) -> None:
 def add_warnings(report: Report) -> None:
     """Add the warnings of the run."""
     found = [f"{warning['at']['file']}:{warning['at']['line']}: {warning['text']}" if warning["at"] else warning["text"]
-             for warning in report.job["warnings"]]
+             for warning in warnings_of(report.job)]
     content = "<ul class=warn>" + "".join(f"<li>{html.escape(line)}</li>" for line in found) + "</ul>"
     report.add("Warnings", content if found else "<p>None.</p>")
 
@@ -152,12 +159,15 @@ def add_warnings(report: Report) -> None:
 def add_statistics(report: Report) -> None:
     """Add what the run cost: increments, iterations, time by section."""
     status = read_frame(report.folder, "status.csv", "outcome", "limiter", "phase")
-    accepted, seconds = status[status["outcome"] == "accepted"], report.job["sections"]
+    accepted, parts = status[status["outcome"] == "accepted"], [part for part, _ in parts_of(report.job)]
+    names = dict.fromkeys(name for part in parts for name in part["sections"])
+    seconds = {name: sum(part["sections"].get(name, 0.0) for part in parts) for name in names}
+    whole = sum(part["seconds"] or 0.0 for part in parts)
     rows: list[tuple[str, Any]] = [
         ("end of the run", end_of(report)), ("increments", len(accepted)),
         ("cut-backs", int((status["outcome"] == "retry").sum())), ("iterations", int(status["iterations"].sum()))]
-    if report.job["seconds"]:
-        rows.append(("wall-clock time", f"{report.job['seconds']:.4g} s"))
+    if whole:
+        rows.append(("wall-clock time", f"{whole:.4g} s"))
     most = max(sum(seconds.values()), 1e-9)
     bars = "<table>" + "".join(
         f'<tr><th>{name}</th><td class="n">{value:.3g} s</td>'

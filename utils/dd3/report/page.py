@@ -11,12 +11,14 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from dd3 import rendering, verdict
+from dd3.errors import Problem
 from dd3.forming_limit import Criteria
 from dd3.plot import sheet as pictures
 from dd3.plot.figures import save
 from dd3.programs import made_folder
 from dd3.run import check_limits, planes_of, read_frame
-from dd3.sheet import AXES, Sheet
+from dd3.sheet import AXES, Sheet, plane
+from dd3.springback import ROUND_OFF
 from dd3.tables import tools_in
 from dd3.viewer import page as interactive
 
@@ -121,11 +123,40 @@ def columns(*tables: str) -> str:
 
 
 def section_planes(report: Report) -> list[str]:
-    """Return the planes of --section, by default those through the middle of the whole sheet."""
+    """Return the planes of --section, by default those through the middle of the whole sheet that cut it, along the
+    axis that it faces."""
     if report.sections:
         return report.sections
-    points = report.sheet.points(0)
-    middle = {axis: 0.0 if axis in report.mirror else float(points[:, i].min() + points[:, i].max()) / 2
-              for i, axis in enumerate(AXES)}
-    planes = [f"y={middle['y']:.6g}", f"x={middle['x']:.6g}"]
-    return [*planes, "45"] if {"x", "y"} <= set(report.mirror) else planes
+    points, facing = report.sheet.points(0), faced(report)
+    planes = [f"{axis}={0.0 if axis in report.mirror else float(points[:, i].min() + points[:, i].max()) / 2:.6g}"
+              for i, axis in reversed(list(enumerate(AXES))) if axis != facing]
+    if facing == "z" and {"x", "y"} <= set(report.mirror):
+        planes.append("45")
+    return [text for text in planes if cuts(report.sheet, text)]
+
+
+def upwards(planes: Sequence[str]) -> str:
+    """Return the name of the upper coordinate in the planes of sections, those of `in_plane`."""
+    across = [text for text in planes if text.strip().startswith("z")]
+    return "z (mm)" if not across else "y (mm)" if len(across) == len(planes) else "z, in planes across z y (mm)"
+
+
+def faced(report: Report) -> str:
+    """Return the axis that the whole sheet faces at the start: z, unless its projection along another one is more than
+    twice as large as both others."""
+    points, faces = report.sheet.points(0), report.sheet.faces(True, 0)
+    across = points[faces[:, 2:]] - points[faces[:, :2]]
+    areas = np.cross(across[:, 0], across[:, 1])
+    area = np.abs(areas.sum(axis=0))
+    area[[axis in report.mirror for axis in "xy"] + [False]] = 0.0  # those of the images are opposite
+    least = max(2 * np.sort(area)[1], ROUND_OFF * np.linalg.norm(areas, axis=1).sum())
+    return AXES[area.argmax()] if area.max() > least else "z"
+
+
+def cuts(sheet: Sheet, text: str) -> bool:
+    """Whether a plane cuts the sheet."""
+    try:
+        sheet.cut(*plane(text), step=0)
+    except Problem:
+        return False
+    return True

@@ -13,7 +13,7 @@ from dd3.forming_limit_curve import COLOURS, ZONES
 from dd3.plot import sheet as pictures
 from dd3.plot import skins
 from dd3.plot.figures import new_figure
-from dd3.report.page import Report, section_planes, table
+from dd3.report.page import Report, section_planes, table, upwards
 from dd3.section import Section
 from dd3.sheet import in_plane, plane
 from dd3.viewer import page as interactive
@@ -129,10 +129,13 @@ def add_springback(report: Report) -> None:
     """Add the free shape against the drawn one: map of the distances, sections over one another, angles and twist."""
     found = springback.find(report.sheet, report.job["phases"], report.mirror)
     if found is None:
+        if said := springback.unfinished(report.job["phases"]):
+            report.add("Springback", f"<p>Not judged: {said}.</p>")
         return
     figure, axes = new_figure((8, 4))
     rows: list[tuple[str, Any]] = []
-    for text in section_planes(report):
+    planes = section_planes(report)
+    for text in planes:
         normal, place = plane(text)
         line = report.sheet.cut(normal, place, step=found.step)[0]
         name = text if "=" in text else f"{text} degrees"
@@ -142,7 +145,7 @@ def add_springback(report: Report) -> None:
         ends = springback.opening(line, found, normal)
         rows.append((f"section {name}", f"turned by {springback.rotation(line, found, normal):+.3g} degrees; its ends "
                                         f"against that by {ends[0]:+.3g} and {ends[1]:+.3g} degrees"))
-    axes.set(xlabel="in the plane of the section (mm)", ylabel="z (mm)")
+    axes.set(xlabel="in the plane of the section (mm)", ylabel=upwards(planes))
     axes.set_aspect("equal", adjustable="datalim")
     axes.grid(True, color="0.9")
     axes.legend(frameon=False)

@@ -38,9 +38,11 @@ def field_map(run: Path, field: str, mirror: Sequence[str]) -> Map:
     sheet = Sheet(run)
     if field != SPRINGBACK:
         return Map(sheet, sheet.last, *sheet.component(sheet.last, field))
-    found = springback.find(sheet, read_job(run)["phases"], mirror)
+    phases = read_job(run)["phases"]
+    found = springback.find(sheet, phases, mirror)
     if found is None:
-        raise Problem(f"{run}: no springback, as its last phase does not release the sheet from tools")
+        raise Problem(f"{run}: no springback, as "
+                      + (springback.unfinished(phases) or "its last phase does not release the sheet from tools"))
     return Map(sheet, found.step, found.distance(), f"{SPRINGBACK} (mm)")
 
 
