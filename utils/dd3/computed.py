@@ -40,10 +40,11 @@ def curve(measured: Measured, sheet: Sheet, history: pd.DataFrame, mirror: Seque
 
 
 def shape(sheet: Sheet, normal: np.ndarray, distance: float, mirror: Sequence[str]) -> list[Piece]:
-    """Return the coordinates in its plane of the pieces of a section of the whole part."""
+    """Return the coordinates in its plane of the pieces of a section of the whole part: those of an image are the image
+    of what the plane's image cuts."""
     across = [axis for axis in mirror if distance or abs(normal[AXES.index(axis)]) < 1 - 1e-12]  # not the plane itself
     found, none = [], []
-    for sign in np.concatenate(images(np.ones((1, 3)), across)):  # the image in the plane is that of what its image cuts
+    for sign in np.concatenate(images(np.ones((1, 3)), across)):
         try:
             lines = sheet.cut(sign * normal, distance)
         except Problem as problem:

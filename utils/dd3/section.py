@@ -7,9 +7,10 @@
 
 A plane is x=..., y=... or z=..., or the angle from x of a plane through the z axis; it cuts the initial sheet, so that
 the section is a line of material. Its table has the length along the line at the start and now, the positions at the
-start and now, and the fields, and where the plane cuts the sheet in several pieces their numbers. --bottom, --wall and --flange are ranges of the initial length: straight lines are fitted
-to bottom and flange and a circle to the wall; the results are the angles between bottom and wall and between wall and
-flange, where the wall begins and ends, and the radius of the wall.
+start and now, and the fields; where the plane cuts the sheet in several pieces, each has its own lengths, and a number
+in the column piece, 1 of the longest. --bottom, --wall and --flange are ranges of the initial length of the longest:
+straight lines are fitted to bottom and flange and a circle to the wall; the results are the angles between bottom and
+wall and between wall and flange, where the wall begins and ends, and the radius of the wall.
 """
 
 from collections.abc import Mapping, Sequence
@@ -88,8 +89,8 @@ def normal_of(sections: Sequence[Section]) -> np.ndarray:
         size = np.linalg.norm(normal)
         return normal / size if size > SHIFT else np.eye(3)[1]
     if extents[2] > PLANE * extents[1]:
-        raise Problem(f"{sections[0].sheet.path}: the line through the nodes lies in no plane: {extents[2]:.3g} mm across "
-                      f"that of the best fit, {extents[1]:.3g} mm in it; expected --plane, in which it is seen")
+        raise Problem(f"{sections[0].sheet.path}: the line through the nodes lies in no plane: {extents[2]:.3g} mm "
+                      f"across that of the best fit, {extents[1]:.3g} mm in it; expected --plane, in which it is seen")
     return np.asarray(axes[2])
 
 

@@ -6,10 +6,10 @@
 
 A run is a folder of results or its history.csv. By default the phase is the last one that a tool controls, the tool
 the one that controls it. Its displacement and force are taken in the direction of its first motion that the sheet
-resists, from the start of the phases drawn; the force is positive where the sheet resists. For another tool, such as a pressed one, the magnitude of
-its force is drawn over the displacement of the controlling tool. Where no tool is moved by a prescribed distance, the
-force is drawn over the angle of the tool, if it turns, or the progress of the phases. A cross marks a run that stopped
-before the end of its last phase.
+resists, from the start of the phases drawn; the force is positive where the sheet resists. For another tool, such as a
+pressed one, the magnitude of its force is drawn over the displacement of the controlling tool. Where no tool is moved
+by a prescribed distance, the force is drawn over the angle of the tool, if it turns, or the progress of the phases. A
+cross marks a run that stopped before the end of its last phase.
 """
 
 from collections.abc import Sequence
@@ -69,7 +69,7 @@ def controlling_tool(history: pd.DataFrame, phases: Sequence[str]) -> str:
     or that with the largest force."""
     rows = rows_of(history, phases)
     travel = np.ptp(history["travel"].to_numpy(float)[rows])
-    paths = {tool: np.linalg.norm(np.ptp(vector(history, tool, "u")[rows], axis=0)) for tool in tools_in(history)}
+    paths = {tool: length(vector(history, tool, "u")[rows])[-1] for tool in tools_in(history)}
     if not paths:
         raise Problem(f"{history.attrs['path']}: there is no tool")
     if travel > 0:
