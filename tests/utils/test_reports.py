@@ -3,6 +3,7 @@
 
 import csv
 import json
+import logging
 import math
 import re
 from pathlib import Path
@@ -16,6 +17,7 @@ from dd3.errors import Problem
 from dd3.forming_limit_curve import ZONES, Curve, keeler_brazier, read_curve
 from dd3.report.course import action
 from dd3.run import Run
+from dd3.scatter.results import profiles
 from dd3.sheet import Sheet
 from dd3.springback import best_fit, find, opening, rotation, symmetry, twist
 from dd3.surface_strain import cell_strains
@@ -127,13 +129,14 @@ def test_plane_of_nodes(tmp_path):
     call("section", folder, "--nodes", *across, "--plane", "x=0", "--output", tmp_path / "s.png")
 
 
-def plate_with_hole(folder):
-    """Write the results of a plate of 12 x 3 x 1 mm with a hole from x = 7 to 9 mm, raised by x^2 / 20 and released."""
+def plate_with_hole(folder, hole=(7, 8)):
+    """Write the results of a plate of 12 x 3 x 1 mm with a hole from x = 7 to 9 mm, or other elements, raised by x^2 / 20
+    and released."""
     x, y, z = np.meshgrid(np.arange(13.0), np.arange(4.0), [0.0, 1.0], indexing="ij")
     start = np.column_stack([x.ravel(), y.ravel(), z.ravel()])
     number = np.arange(len(start)).reshape(13, 4, 2)
     cells = [[number[i + a, j + b, k] for k in (0, 1) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))]
-             for i in range(12) for j in range(3) if j != 1 or i not in (7, 8)]
+             for i in range(12) for j in range(3) if j != 1 or i not in hole]
     history = HISTORY.replace("1,draw,2,1", "1,free,0,1")
     one = np.ones(len(start))
     fields = {"thickness": (one, 1 - start[:, 0] / 100), **{name: (0 * one, 0 * one) for name in (
@@ -142,7 +145,7 @@ def plate_with_hole(folder):
                      phases=[DRAW, RELEASED])
 
 
-def test_pieces(tmp_path):
+def test_pieces(tmp_path, caplog):
     """Check tables and page where a plane cuts a sheet with a hole in two pieces, of which one is used or all are."""
     folder = plate_with_hole(tmp_path / "plate.out")
     said = call("section", folder, "--plane", "y=1.5", "--wall", 1, 6, "--table", tmp_path / "s.csv",
@@ -170,9 +173,14 @@ def test_pieces(tmp_path):
     used = "2 pieces; the longest, 7 mm, is used"
     assert rows["thickness, section y=1.5 (lengths.csv)"].endswith("; section of " + used)
     assert rows["section y=1.5"].endswith("degrees; " + used)
-    said = []
-    twist(Sheet(folder), find(Sheet(folder), [DRAW, RELEASED]), said)
-    assert said == []
+    for path, expected in ((folder, []), (plate_with_hole(tmp_path / "end.out", (10,)),
+                                          ["section x=10.8: 2 pieces; the longest, 1 mm, is used"])):
+        found, said = find(Sheet(path), [DRAW, RELEASED]), []
+        assert twist(Sheet(path), found._replace(mirror=[]), said) and said == expected
+    with caplog.at_level(logging.WARNING, "dd3"):
+        profiles([folder, folder], "thickness along y=1.5", "")
+    assert [message for message in caplog.messages if "longest" in message] == [
+        f"{Sheet(folder).path}: section y=1.5: {used}"]
     curves = json.loads(re.search("curves_sections[^{\\[]*(.*?)</script>", text, re.DOTALL)[1])
     assert "y=1.5, piece 2" in json.dumps(curves)
 

@@ -123,8 +123,8 @@ class Run:
 
     def sections(self, plane: str = "y=0", fields: Sequence[str] = ("thickness",), *, at: str | float | None = None,
                  lower: bool = False) -> "pd.DataFrame":
-        """Return a section of the sheet as a table: lengths along it before and now, places before and now, mm, fields;
-        the numbers of its pieces where there are several.
+        """Return a section of the sheet as a table: lengths and places before and now, mm, fields, numbers of several
+        pieces.
 
         plane: x=0, y=12.5, or an angle in degrees from x; it cuts the initial sheet. at: travel in mm, or a phase (the
         last step). lower: on the lower face in place of the upper one.

@@ -139,7 +139,7 @@ def add_springback(report: Report) -> None:
         for points, style in ((found.drawn, "--"), (found.free, "-")):
             for line in lines:
                 axes.plot(*in_plane(line.at(points), normal).T, style, color=f"C{len(rows)}", linewidth=1.3,
-                          label="" if line is not lines[0] else f"{name}, {'drawn' if style == '--' else 'free'}")
+                          label=None if line is not lines[0] else f"{name}, {'drawn' if style == '--' else 'free'}")
         ends = springback.opening(lines[0], found, normal)
         said = of_pieces(lines, report.sheet.start(found.step))
         rows.append((f"section {name}", f"turned by {springback.rotation(lines[0], found, normal):+.3g} degrees; its "
@@ -187,7 +187,7 @@ def add_measured(report: Report) -> None:
         unit, scale = measured.shown_unit(measure)
         over = "degrees" if measure.over == "angle" else "mm"
         for number, (at, values) in enumerate(pieces):
-            place.plot(at, values / scale, "-", color="#0072b2", label="" if number else "computed")
+            place.plot(at, values / scale, "-", color="#0072b2", label=None if number else "computed")
         place.plot(measure.at, measure.values / scale, "o", markersize=3, color="#d55e00",
                    label=f"measured, {measure.file}")
         place.set(xlabel=f"{measure.over} ({over})", ylabel=f"{measure.title()} ({unit})")
