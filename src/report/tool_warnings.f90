@@ -71,8 +71,8 @@ contains
   end subroutine add_tool_warnings
 
   !> Return a warning if a tool was moved or pressed in the phase and has never touched the sheet,
-  !> unless it stands before the sheet, by less than its thickness, in a given gap to another tool or
-  !> for the next phase, which presses it.
+  !> unless it stands before the sheet, by less than its thickness, in a given gap to another tool
+  !> or for the next phase, which presses it.
   function contact_warning(model, state, tool) result(text)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state

@@ -87,10 +87,11 @@ contains
           "of edges of larger elements, and the mixed formulation of the contact has an "// &
           "equation at each node", "formulation = compliant", code="E148")
     end if
-    if (case%adaptive%levels > 0 .and. allocated(mesh%bound) .and. .not. allocated(mesh%level)) &
-        call errors%push_input(case%adaptive%at, "the sizes of the elements beside nodes in "// &
-        "the middle of edges contradict each other: they do not come from halving", &
-        "adaptive = 0", code="E148")
+    if (case%adaptive%levels > 0 .and. allocated(mesh%bound) .and. .not. allocated(mesh%level)) then
+      call errors%push_input(case%adaptive%at, "the sizes of the elements beside nodes in the "// &
+          "middle of edges contradict each other: they do not come from halving", &
+          "adaptive = 0", code="E148")
+    end if
   end subroutine check_refinement
 
   !> Find the levels of a mesh with bound nodes that a file gives without levels.

@@ -6,11 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from helpers import call
-from viewer_run import viewed_run
+from helpers import call, write_run
+from viewer_run import HISTORY, STATUS, viewed_run
 
+from dd3.computed import curve
 from dd3.errors import Problem
 from dd3.measured import Measured, along_curve, from_line, read
+from dd3.sheet import Sheet
 
 
 def test_tables(tmp_path):
@@ -26,7 +28,17 @@ def test_tables(tmp_path):
     assert thick.values.tolist() == [1.0, 0.9] and thin.values.tolist() == [0, 0.1] and thin.section == "y=0"
 
 
+def test_units(tmp_path):
+    """Check that MN and mN are told apart, and other units read in small or large letters."""
+    file = tmp_path / "a.csv"
+    for unit, size in (("MN", 1e6), ("mN", 1e-3), ("KN", 1e3), ("n", 1.0), ("LBF", 4.448222)):
+        file.write_text(f"travel [MM], punch_force [{unit}]\n1, 2\n")
+        found, = read(file, ["punch"])
+        assert found.values[0] == 2 * size, unit
+
+
 @pytest.mark.parametrize("text, said", (
+    ("travel [mm], punch_force [mn]\n1, 2\n", "'punch_force' has the unit 'mn'"),
     ("travel [mm], force [kN]\n1, 2\n", "no column 'force'"), ("travel [mm], force [kN]\n1, 2\n", "punch_force"),
     ("travel [mm], punch_force\n1, 2\n", "'punch_force' has no unit"),
     ("travel [s], punch_force [N]\n1, 2\n", "the unit 's'"),
@@ -61,6 +73,57 @@ def test_differences():
     assert abs(found.largest - 3) < 1e-12 and found.where == 20 and abs(found.rms**2 - (2 + 9) / 2) < 1e-12
     with pytest.raises(Problem):
         along_curve(Measured("a", "draw_in", "angle", "", np.array([90.0]), np.array([1.0])), at, values)
+
+
+def test_nearest_piece():
+    """Check distances from the nearest of several lines, and differences over the piece in which a point lies."""
+    lines = [np.array([[0.0, 0], [4, 0]]), np.array([[6.0, 0], [9, 0]])]
+    found = from_line(Measured("a", "z", "along", "y=0", np.array([1.0, 5, 8]), np.array([0, 0, 0.5])), *lines)
+    assert found.largest == 1 and found.where == 5 and found.points == 3
+    one, other = (np.array([0.0, 90]), np.array([1.0, 2])), (np.array([270.0, 360]), np.array([2.0, 1]))
+    found = along_curve(Measured("a", "draw_in", "angle", "", np.array([-45.0, 180]), np.array([2.5, 9])), *one, other)
+    assert abs(found.largest - 1) < 1e-9 and found.beyond == 1
+
+
+def quarter(folder):
+    """Write the results of a quarter of a ring from 20 to 50 mm: the rim is drawn in by 2 to 3 mm over the angle, the
+    hole by 0."""
+    radius, angle, z = np.meshgrid([20.0, 30, 40, 50], np.radians(np.linspace(0, 90, 10)), [0.0, 1.0], indexing="ij")
+    start = np.column_stack([(radius * np.cos(angle)).ravel(), (radius * np.sin(angle)).ravel(), z.ravel()])
+    number = np.arange(len(start)).reshape(radius.shape)
+    cells = [[number[i + a, j + b, k] for k in (0, 1) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))]
+             for i in range(3) for j in range(9)]
+    draw_in = np.where(radius.ravel() == 50, 2 + np.degrees(angle.ravel()) / 90, 0)
+    return write_run(folder, start, start, cells, HISTORY, STATUS, {"draw_in": (0 * draw_in, draw_in)})
+
+
+def test_whole_part(tmp_path):
+    """Check draw-in and shape at points on mirror images, beside a hole."""
+    sheet = Sheet(quarter(tmp_path / "ring.out"))
+    at, values = np.array([0.0, 45, 135, 180, 270, -45, 300]), np.array([2, 2.5, 2.5, 2, 3, 2.5, 2 + 2 / 3])
+    found = along_curve(measured := Measured("a", "draw_in", "angle", "", at, values), *flat(sheet, measured, ["x", "y"]))
+    assert found.points == 7 and found.beyond == 0 and abs(found.largest) < 1e-6, found
+    strip = Sheet(viewed_run(tmp_path / "strip.out"))
+    along = np.array([-35.0, -10, 0, 20, 35])
+    for plane, mirror in (("y=2", "xy"), ("y=-2", "xy"), ("y=2", "x"), ("0", "xy")):
+        measured = Measured("a", "z", "along", plane, along, 1 - 6 * (along / 40)**2)
+        found = from_line(measured, *map(np.column_stack, curve(measured, strip, None, mirror).pieces))
+        assert found.largest < 0.01, (plane, mirror, found)
+    half = Measured("a", "z", "along", "y=2", along, along)
+    assert len(curve(half, strip, None, "y").pieces) == 1 and len(curve(half, strip, None, "xy").pieces) == 2
+    with pytest.raises(Problem, match="does not cut"):
+        curve(half._replace(section="y=50"), strip, None, "xy")
+    # A plane through the axis: the image beyond it.
+    r = np.array([-9.0, -5, 5, 9])
+    away = from_line(found := Measured("a", "z", "along", "45", r, 1 - 3 * (r / 40)**2),
+                     *map(np.column_stack, curve(found, strip, None, "xy").pieces))
+    assert away.largest < 0.01, away
+
+
+def flat(sheet, measured, mirror):
+    """Return the pieces of a computed curve, as arguments."""
+    pieces = curve(measured, sheet, None, mirror).pieces
+    return *pieces[0], *pieces[1:]
 
 
 def test_on_the_page(tmp_path):

@@ -13,6 +13,7 @@ from helpers import ROOT, call, write_run
 
 from dd3.plot import force
 from dd3.plot.beads import draped
+from dd3.plot.figures import new_figure
 from dd3.plot.increments import Increments
 from dd3.run import read_frame
 
@@ -94,6 +95,36 @@ def test_curves(tmp_path):
     assert found.quantity == "punch displacement (mm)" and np.allclose(found.along, [0, 4, 10])
     found = force.curve(history, phases=["turn"])
     assert found.quantity == "roll angle (degrees)" and list(found.along) == [0, 20, 40]
+
+
+@pytest.mark.parametrize("places, forces, along, shown", (
+    # Down against the sheet, and up beyond the start, where it is farther away.
+    ((-0.3, -0.6, 0.2, 0.7), (3, 7, 0, -5), (0.3, 0.6, -0.2, -0.7), (3, 7, 0, -5)),
+    ((-1, -2, -1, 1e-15), (30, 70, 9, 0), (1, 2, 1, 0), (30, 70, 9, 0)),  # there and back: round-off is left
+    ((0.5, 0, -4, -8), (0, 0, 50, 90), (-0.5, 0, 4, 8), (0, 0, 50, 90)),  # lifted before, against nothing
+    ((2, 4, 6, 8), (9, 4, 1, 0), (2, 4, 6, 8), (-9, -4, -1, 0)),  # a release: the sheet follows
+))
+def test_sign_of_the_force(tmp_path, places, forces, along, shown):
+    """Check that displacement and force of motions there and back are positive where the sheet resists first."""
+    row = "{},{},{},{},0,0,{},0,0,{}" + ",0" * 7 + ",1,1\n"
+    travel = np.cumsum(np.abs(np.diff((0, *places))))
+    rows = [(0, "a", 0, 0, 0, 0), *((i + 1, "aabb"[i], travel[i], (0.5, 1)[i % 2], place, force)
+                                    for i, (place, force) in enumerate(zip(places, forces)))]
+    (tmp_path / "history.csv").write_text(HEAD + "".join(row.format(*one) for one in rows))
+    found = force.curve(read_frame(tmp_path, "history.csv"), phases=["a", "b"])
+    assert found.tool == "punch" and found.quantity == "punch displacement (mm)"
+    assert np.allclose(found.along, (0, *along)) and np.allclose(found.force, (0, *shown)), (found.along, found.force)
+    _, axes = new_figure((4, 3))
+    force.draw(axes, [found], [""])
+    assert axes.get_xlim()[0] <= min(0.0, *along)
+
+
+def test_controlling_tool_there_and_back(tmp_path):
+    """Check that the tool whose whole path is the travel is found beside one that ends as far from its start."""
+    row = "{},{},{},{},0,0,{},0,0,{},0,0,{},0,0,0,0,1,1\n"
+    rows = [(0, "a", 0, 0, 0, 0, 0), (1, "a", 2, 1, -2, 50, 1.5), (2, "b", 4, 1, 0, 0, 3)]
+    (tmp_path / "history.csv").write_text(HEAD + "".join(row.format(*one) for one in rows))
+    assert force.controlling_tool(read_frame(tmp_path, "history.csv"), ["a", "b"]) == "punch"
 
 
 def test_progress_of_phases_that_end_early(tmp_path):

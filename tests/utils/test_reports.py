@@ -3,6 +3,7 @@
 
 import csv
 import json
+import logging
 import math
 import re
 from pathlib import Path
@@ -17,7 +18,7 @@ from dd3.forming_limit_curve import ZONES, Curve, keeler_brazier, read_curve
 from dd3.report.course import action
 from dd3.report.page import Report, section_planes
 from dd3.run import Run
-from dd3.scatter.results import field_map
+from dd3.scatter.results import field_map, profiles
 from dd3.sheet import Sheet, plane_name
 from dd3.springback import best_fit, find, opening, rotation, symmetry, twist, unfinished
 from dd3.surface_strain import cell_strains
@@ -62,6 +63,11 @@ def profile(count=10):
 @pytest.fixture
 def run(tmp_path):
     """Write the results of a flat strip that became the profile at its upper face."""
+    return profile_run(tmp_path / "job.out")
+
+
+def profile_run(folder, turn=np.eye(3)):
+    """Write the results of the strip, turned."""
     length, points, angles = profile()
     n, widths = len(length), (0.0, 5.0, 10.0)
     normal = np.column_stack([-np.sin(angles), np.cos(angles)])
@@ -80,8 +86,8 @@ def run(tmp_path):
         "equivalent_plastic_strain": (0, 0.1), "major_strain_middle": (0, x / 200), "minor_strain_middle": (0, -0.02),
     }.items()}
     warnings = [{"code": "W109", "text": "the mesh is coarse", "at": {"file": "job.dat", "line": 3}, "phase": "draw"}]
-    return write_run(tmp_path / "job.out", start, now, cells, HISTORY, STATUS, fields, title="A profile & its <report>",
-                     materials=MATERIALS, input={"blocks": BLOCKS}, phases=[DRAW], warnings=warnings)
+    return write_run(folder, start @ turn.T, now @ turn.T, cells, HISTORY, STATUS, fields,
+                     title="A profile & its <report>", materials=MATERIALS, input={"blocks": BLOCKS}, phases=[DRAW], warnings=warnings)
 
 
 def test_section(run, tmp_path):
@@ -105,6 +111,79 @@ def test_section(run, tmp_path):
                         (("--nodes", 1, 9999), "the nodes are 1 to"), (("--field", "nosuch"), "no field 'nosuch'"),
                         (("--wall", 0, 1), "expected 3 or more"), (("--flange", 0, 1), "need --wall")):
         assert said in call("section", run, *words, "--output", tmp_path / "s.png", expect=2), words
+
+
+def test_plane_of_nodes(tmp_path):
+    """Check that a line of nodes is seen in its own plane, whatever its direction, and what lies in none."""
+    turn = np.array([[0.6, -0.8, 0], [0.8, 0.6, 0], [0, 0, 1]])
+    folder = profile_run(tmp_path / "turned.out", turn @ np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]]))
+    nodes = range(52, 103)  # of the upper face at one border
+    words = [word for name, part in (("bottom", 0), ("wall", 2), ("flange", 4))
+             for word in (f"--{name}", ENDS[part], ENDS[part + 1])]
+    said = call("section", folder, "--nodes", *nodes, *words, "--output", tmp_path / "s.png")
+    for name, value in (("angle between bottom and wall", 100), ("angle between wall and flange", 105),
+                        ("radius of the wall", 100)):
+        assert float(re.search(f"{name}: ([0-9.]+)", said)[1]) == pytest.approx(value, abs=0.05), said
+    across = [node + 102 * (place % 2) for place, node in enumerate(nodes)]
+    said = call("section", folder, "--nodes", *across, "--output", tmp_path / "s.png", expect=2)
+    assert "lies in no plane" in said and "expected --plane" in said
+    call("section", folder, "--nodes", *across, "--plane", "x=0", "--output", tmp_path / "s.png")
+
+
+def plate_with_hole(folder, hole=(7, 8)):
+    """Write the results of a plate of 12 x 3 x 1 mm with a hole from x = 7 to 9 mm, or other elements, raised by x^2 / 20
+    and released."""
+    x, y, z = np.meshgrid(np.arange(13.0), np.arange(4.0), [0.0, 1.0], indexing="ij")
+    start = np.column_stack([x.ravel(), y.ravel(), z.ravel()])
+    number = np.arange(len(start)).reshape(13, 4, 2)
+    cells = [[number[i + a, j + b, k] for k in (0, 1) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))]
+             for i in range(12) for j in range(3) if j != 1 or i not in hole]
+    history = HISTORY.replace("1,draw,2,1", "1,free,0,1")
+    one = np.ones(len(start))
+    fields = {"thickness": (one, 1 - start[:, 0] / 100), **{name: (0 * one, 0 * one) for name in (
+        "thinning", "draw_in", "equivalent_plastic_strain", "major_strain_middle", "minor_strain_middle")}}
+    return write_run(folder, start, start + np.outer(start[:, 0]**2 / 20, [0, 0, 1]), cells, history, STATUS, fields,
+                     phases=[DRAW, RELEASED])
+
+
+def test_pieces(tmp_path, caplog):
+    """Check tables and page where a plane cuts a sheet with a hole in two pieces, of which one is used or all are."""
+    folder = plate_with_hole(tmp_path / "plate.out")
+    said = call("section", folder, "--plane", "y=1.5", "--wall", 1, 6, "--table", tmp_path / "s.csv",
+                "--output", tmp_path / "s.png")
+    assert said.count("the section is in 2 pieces; the longest, 7 mm, is used") == 1, said
+    rows = list(csv.DictReader((tmp_path / "s.csv").open()))
+    assert [row["piece"] for row in rows] == 8 * ["1"] + 4 * ["2"]
+    assert sorted(float(row["x0"]) for row in rows) == [x for x in range(13) if x != 8]
+    assert {row["length0"] for row in rows if row["x0"] in ("0", "9", "7", "12")} == {"0", "3", "7"}
+    found = Run(folder).sections("y=1.5")
+    assert list(found["piece"]) == 8 * [1] + 4 * [2] and np.allclose(found["thickness"], 1 - found["x0"] / 100)
+    assert "piece" not in Run(folder).sections("y=0.5")
+    call("section", folder, "--plane", "y=0.5", "--wall", 1, 6, "--output", tmp_path / "s.png")
+    assert "longest" not in call("section", folder, "--plane", "y=1.5", "--output", tmp_path / "s.png")
+    table = tmp_path / "shape.csv"
+    x = np.array([0, 3, 7, 9, 10, 12])
+    table.write_text("section,along [mm],z [mm]\n" + "".join(f"y=1.5,{at},{1 + at**2 / 20}\n" for at in x))
+    lengths = tmp_path / "lengths.csv"
+    lengths.write_text("section,length0 [mm],thickness [mm]\ny=1.5,2,0.98\n")
+    page = call("report", folder, "--section", "y=1.5", "--measured", table, "--measured", lengths,
+                "--output", tmp_path / "report").strip().splitlines()[-1]
+    text = Path(page).read_text(encoding="utf-8")
+    rows = dict(re.findall("<tr><th>(.*?)</th><td>(.*?)</td></tr>", text))
+    assert float(re.search(r"difference \+([0-9.e-]+)", rows["z, section y=1.5 (shape.csv)"])[1]) < 1e-6, rows
+    used = "2 pieces; the longest, 7 mm, is used"
+    assert rows["thickness, section y=1.5 (lengths.csv)"].endswith("; section of " + used)
+    assert rows["section y=1.5"].endswith("degrees; " + used)
+    for path, expected in ((folder, []), (plate_with_hole(tmp_path / "end.out", (10,)),
+                                          ["section x=10.8: 2 pieces; the longest, 1 mm, is used"])):
+        found, said = find(Sheet(path), [DRAW, RELEASED]), []
+        assert twist(Sheet(path), found._replace(mirror=[]), said) and said == expected
+    with caplog.at_level(logging.WARNING, "dd3"):
+        profiles([folder, folder], "thickness along y=1.5", "")
+    assert [message for message in caplog.messages if "longest" in message] == [
+        f"{Sheet(folder).path}: section y=1.5: {used}"]
+    curves = json.loads(re.search("curves_sections[^{\\[]*(.*?)</script>", text, re.DOTALL)[1])
+    assert "y=1.5, piece 2" in json.dumps(curves)
 
 
 def test_limit(tmp_path):

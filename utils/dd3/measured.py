@@ -23,7 +23,7 @@ from dd3.columns import Line, lines_of
 from dd3.errors import Problem
 
 LENGTH = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "µm": 1e-3, "um": 1e-3, "in": 25.4, "inch": 25.4}
-FORCE = {"n": 1.0, "kn": 1e3, "mn": 1e6, "lbf": 4.448222}
+FORCE = {"N": 1.0, "kN": 1e3, "MN": 1e6, "mN": 1e-3, "lbf": 4.448222}
 ANGLE = {"degrees": 1.0, "deg": 1.0, "°": 1.0, "rad": 57.295779513}
 FRACTION = {"": 1.0, "-": 1.0, "1": 1.0, "%": 0.01}
 SECTION = "section"
@@ -93,12 +93,19 @@ def heading(line: Line, separator: str, units: Mapping[str, Mapping[str, float]]
             raise line.problem(cell, f"no column '{name or cell[0]}'", f"{SECTION}, {', '.join(units)}")
         if name in names:
             raise line.problem(cell, f"a second column '{name}'", "one")
-        if name != SECTION and unit.lower() not in units[name]:
+        factor = 1.0 if name == SECTION else factor_of(unit, units[name])
+        if factor is None:
             raise line.problem(cell, f"'{name}' has the unit '{unit}'" if unit else f"'{name}' has no unit",
                                f"{name} [{'], ['.join(known or '-' for known in units[name])}]")
         names.append(name)
-        factors.append(1.0 if name == SECTION else units[name][unit.lower()])
+        factors.append(factor)
     return names, factors
+
+
+def factor_of(unit: str, known: Mapping[str, float]) -> float | None:
+    """Return the factor of a unit, whose letters may be small or large where only one unit is meant; None of others."""
+    same = [factor for name, factor in known.items() if name.lower() == unit.lower()]
+    return known.get(unit, same[0] if len(same) == 1 else None)
 
 
 def row_of(line: Line, separator: str, names: Sequence[str], factors: Sequence[float]) -> dict[str, float | str]:
@@ -127,21 +134,31 @@ def curves(file: str, name: str, over: str, rows: Sequence[Mapping[str, float | 
     return found
 
 
-def along_curve(measured: Measured, at: np.ndarray, values: np.ndarray) -> Difference:
-    """Return the differences from a computed curve, linear between its points, over increasing `at`."""
-    turn = at[0] + (measured.at - at[0] + SAME) % 360 - SAME  # of angles, in the turn that the curve begins with
-    places = turn if measured.over == "angle" else measured.at
-    inside = (places >= at[0] - SAME) & (places <= at[-1] + SAME)
-    return difference(measured, inside, measured.values - np.interp(places, at, values))
+def along_curve(measured: Measured, at: np.ndarray, values: np.ndarray, *others: tuple[np.ndarray, np.ndarray]
+                ) -> Difference:
+    """Return the differences from a computed curve, linear between its points, over increasing `at`; others: pieces of
+    the curve elsewhere, for the points that lie beyond it."""
+    computed, inside = np.zeros(len(measured.at)), np.zeros(len(measured.at), bool)
+    for places, heights in ((at, values), *others):
+        turn = places[0] + (measured.at - places[0] + SAME) % 360 - SAME  # of angles, in the turn that it begins with
+        own = turn if measured.over == "angle" else measured.at
+        new = (own >= places[0] - SAME) & (own <= places[-1] + SAME) & ~inside
+        computed[new], inside = np.interp(own[new], places, heights), inside | new
+    return difference(measured, inside, measured.values - computed)
 
 
-def from_line(measured: Measured, line: np.ndarray) -> Difference:
-    """Return the distances of measured points from a computed line (n, 2); the measured ones beyond its ends count."""
-    points = np.column_stack([measured.at, measured.values])
+def from_line(measured: Measured, *lines: np.ndarray) -> Difference:
+    """Return the distances of measured points from the nearest of computed lines (n, 2); points beyond the ends
+    count."""
+    away = np.min([distances(np.column_stack([measured.at, measured.values]), line) for line in lines], axis=0)
+    return difference(measured, np.ones(len(away), bool), away)
+
+
+def distances(points: np.ndarray, line: np.ndarray) -> np.ndarray:
+    """Return the distances of points from a line, both (n, 2)."""
     start, step = line[:-1], np.diff(line, axis=0)
     part = np.clip(((points[:, None] - start) * step).sum(axis=2) / np.maximum((step**2).sum(axis=1), 1e-30), 0, 1)
-    away = np.linalg.norm(points[:, None] - start - part[..., None] * step, axis=2).min(axis=1)
-    return difference(measured, np.ones(len(points), bool), away)
+    return np.asarray(np.linalg.norm(points[:, None] - start - part[..., None] * step, axis=2).min(axis=1))
 
 
 def difference(measured: Measured, inside: np.ndarray, away: np.ndarray) -> Difference:

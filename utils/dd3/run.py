@@ -124,14 +124,15 @@ class Run:
 
     def sections(self, plane: str = "y=0", fields: Sequence[str] = ("thickness",), *, at: str | float | None = None,
                  lower: bool = False) -> "pd.DataFrame":
-        """Return a section of the sheet as a table: lengths along it before and now, places before and now, mm, fields.
+        """Return a section of the sheet as a table: lengths and places before and now, mm, fields, numbers of several
+        pieces.
 
         plane: x=0, y=12.5, or an angle in degrees from x; it cuts the initial sheet. at: travel in mm, or a phase (the
         last step). lower: on the lower face in place of the upper one.
         """
-        from dd3.section import sections_of
+        from dd3.section import sections_of, table_of
         places = () if at is None else (str(at),)
-        return sections_of(self.folder, plane, lower=lower, at=places)[0][0].table(fields)
+        return table_of(sections_of(self.folder, plane, lower=lower, at=places)[0][0], fields)
 
     def springback(self, mirror: Sequence[str] = ()) -> "Springback | None":
         """Return the drawn and the free shape after the best fit, with the distance of each node; None where the last

@@ -7,9 +7,10 @@
 
 A plane is x=..., y=... or z=..., or the angle from x of a plane through the z axis; it cuts the initial sheet, so that
 the section is a line of material. Its table has the length along the line at the start and now, the positions at the
-start and now, and the fields. --bottom, --wall and --flange are ranges of the initial length: straight lines are fitted
-to bottom and flange and a circle to the wall; the results are the angles between bottom and wall and between wall and
-flange, where the wall begins and ends, and the radius of the wall.
+start and now, and the fields; where the plane cuts the sheet in several pieces, each has its own lengths, and a number
+in the column piece, 1 of the longest. --bottom, --wall and --flange are ranges of the initial length of the longest:
+straight lines are fitted to bottom and flange and a circle to the wall; the results are the angles between bottom and
+wall and between wall and flange, where the wall begins and ends, and the radius of the wall.
 """
 
 from collections.abc import Mapping, Sequence
@@ -21,21 +22,27 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from dd3.command import new_parser
-from dd3.errors import Problem
+from dd3.errors import LOG, Problem
 from dd3.fields import AT
 from dd3.plot.figures import new_figure, save
-from dd3.sheet import AXES, Line, Sheet, in_plane, length, plane
+from dd3.sheet import AXES, SHIFT, Line, Sheet, in_plane, length, of_pieces, plane
 
+PLANE = 0.1  # extent of a line across its plane, over that in it at right angles to the line
 STRAIGHT = 1e-7  # curvature times length below which a wall is straight
 
 
 class Section:
-    """A line of the sheet, of the mesh of a step, at that step: lengths, positions and fields."""
+    """A line of the sheet, of the mesh of a step, at that step: lengths, positions and fields; piece: its number where
+    it is one of several, else 0."""
 
-    def __init__(self, sheet: Sheet, line: Line, step: int) -> None:
-        self.sheet, self.line, self.step = sheet, line, step
+    def __init__(self, sheet: Sheet, line: Line, step: int, piece: int = 0) -> None:
+        self.sheet, self.line, self.step, self.piece = sheet, line, step, piece
         self.start, self.now = line.at(sheet.start(step)), line.at(sheet.points(step))
         self.length0, self.length = length(self.start), length(self.now)
+
+    def named(self) -> str:
+        """Return the number of the piece, to follow other words; nothing where there is one."""
+        return f", piece {self.piece}" if self.piece else ""
 
     def field(self, name: str) -> tuple[np.ndarray, str]:
         """Return a field, or its component as in stress:11, and its label."""
@@ -55,6 +62,36 @@ class Section:
             raise Problem(f"{inside.sum()} points between {limits[0]:g} and {limits[1]:g} mm of "
                           f"{self.length0[-1]:g} mm: expected 3 or more")
         return self.now[inside]
+
+
+def pieces_of(sheet: Sheet, lines: Sequence[Line], step: int) -> list[Section]:
+    """Return the pieces of a section, the longest first."""
+    return [Section(sheet, line, step, number if lines[1:] else 0) for number, line in enumerate(lines, 1)]
+
+
+def table_of(pieces: Sequence[Section], fields: Sequence[str]) -> pd.DataFrame:
+    """Return the table of the pieces of a section, with their numbers where there are several."""
+    tables = [piece.table(fields) for piece in pieces]
+    if len(tables) > 1:
+        for piece, table in zip(pieces, tables, strict=True):
+            table.insert(0, "piece", piece.piece)
+    return pd.concat(tables, ignore_index=True)
+
+
+def normal_of(sections: Sequence[Section]) -> np.ndarray:
+    """Return the normal of the plane through lines; that of the upright plane where they are one straight line."""
+    points = np.concatenate([section.now for section in sections])
+    points = points - points.mean(axis=0)
+    axes = np.linalg.svd(points, full_matrices=False)[2] if len(points) > 2 else np.eye(3)
+    extents = np.ptp(points @ axes.T, axis=0)
+    if extents[1] <= SHIFT * sections[0].sheet.size():
+        normal = np.cross(axes[0], np.eye(3)[2])
+        size = np.linalg.norm(normal)
+        return normal / size if size > SHIFT else np.eye(3)[1]
+    if extents[2] > PLANE * extents[1]:
+        raise Problem(f"{sections[0].sheet.path}: the line through the nodes lies in no plane: {extents[2]:.3g} mm "
+                      f"across that of the best fit, {extents[1]:.3g} mm in it; expected --plane, in which it is seen")
+    return np.asarray(axes[2])
 
 
 def direction(points: np.ndarray) -> np.ndarray:
@@ -113,7 +150,7 @@ def draw(sections: Sequence[Section], normal: np.ndarray, fields: Sequence[str],
         for section in sections:
             values, label = section.field(name)
             place.plot(section.length0, values, ".-", linewidth=1.2, markersize=3,
-                       label=section.sheet.state(section.step))
+                       label=section.sheet.state(section.step) + section.named())
         place.set_ylabel(label)
         place.set_xlabel("initial length along the section (mm)")
         place.grid(True, color="0.9")
@@ -127,19 +164,22 @@ def draw(sections: Sequence[Section], normal: np.ndarray, fields: Sequence[str],
         axes[0].legend(frameon=False)
 
 
-def sections_of(run: str | Path, plane_at: str = "y=0", *, nodes: Sequence[int] | None = None, lower: bool = False,
-                at: Sequence[str] = ()) -> tuple[list[Section], np.ndarray]:
-    """Return the section of the sheet of a run at some places (AT), by default at the last step, and the normal of its
-    plane: x=0, y=12.5, an angle from x; or the line through nodes. lower: on the lower face."""
+def sections_of(run: str | Path, plane_at: str | None = None, *, nodes: Sequence[int] | None = None,
+                lower: bool = False, at: Sequence[str] = ()) -> tuple[list[list[Section]], np.ndarray]:
+    """Return the pieces of the section of the sheet of a run at each of some places (AT), by default at the last step,
+    and the normal of its plane: x=0, y=12.5, an angle from x (y=0); or the line through nodes, by default in the plane
+    through them. lower: on the lower face."""
     sheet = Sheet(run)
-    normal, distance = plane(plane_at)
+    normal, distance = plane(plane_at or "y=0")
     steps = [sheet.step_at(place) for place in at] or [sheet.last]
-    return [Section(sheet, sheet.line_of_nodes(nodes, step) if nodes
-                    else sheet.cut(normal, distance, not lower, step=step)[0], step) for step in steps], normal
+    found = [pieces_of(sheet, [sheet.line_of_nodes(nodes, step)] if nodes
+                       else sheet.cut(normal, distance, not lower, step=step), step) for step in steps]
+    return found, normal_of([pieces[0] for pieces in found]) if nodes and not plane_at else normal
 
 
-def figure_of(sections: Sequence[Section], normal: np.ndarray, fields: Sequence[str]) -> Figure:
-    """Return a figure of fields along sections in a plane."""
+def figure_of(places: Sequence[Sequence[Section]], normal: np.ndarray, fields: Sequence[str]) -> Figure:
+    """Return a figure of fields along the pieces of sections in a plane, at some places (AT)."""
+    sections = [section for pieces in places for section in pieces]
     drawn, axes = new_figure((7, 3 * len(fields) + 3), len(fields) + 1, squeeze=False)
     draw(sections, normal, fields, axes[:, 0])
     return drawn
@@ -156,7 +196,8 @@ def main(words: Sequence[str] | None = None) -> None:
     """Draw, write and measure the section of the command line."""
     parser = new_parser("section", __doc__)
     parser.add_argument("run", metavar="RUN", help="folder of results, or its fields.vtkhdf")
-    parser.add_argument("--plane", default="y=0", help="plane of the section: x=0, y=12.5, or an angle (y=0)")
+    parser.add_argument("--plane", help="plane of the section: x=0, y=12.5, or an angle (y=0); that in which a line of "
+                                        "nodes is seen (the one through them)")
     parser.add_argument("--nodes", type=int, nargs="+", metavar="N", help="numbers of nodes along a line instead")
     parser.add_argument("--lower", action="store_true", help="lower face of the sheet instead of the upper one")
     parser.add_argument("--field", action="append", default=[], help="field at the nodes; may be repeated (thickness)")
@@ -170,14 +211,17 @@ def main(words: Sequence[str] | None = None) -> None:
     if (options.bottom or options.flange) and not options.wall:
         parser.error("--bottom and --flange need --wall")
     fields = options.field or ["thickness"]
-    sections, normal = sections_of(options.run, options.plane, nodes=options.nodes, lower=options.lower,
-                                   at=options.at or ())
-    save(figure_of(sections, normal, fields), options.output, 150)
+    places, normal = sections_of(options.run, options.plane, nodes=options.nodes, lower=options.lower,
+                                 at=options.at or ())
+    save(figure_of(places, normal, fields), options.output, 150)
     print(options.output)
     if options.table:
-        sections[-1].table(fields).to_csv(options.table, index=False, float_format="%.9g")
+        table_of(places[-1], fields).to_csv(options.table, index=False, float_format="%.9g")
         print(options.table)
     if options.wall:
         ranges = {name: limits for name in ("bottom", "wall", "flange") if (limits := getattr(options, name))}
-        for name, value, unit in springback(sections[-1], normal, ranges):
+        first = places[-1][0]
+        if said := of_pieces([piece.line for piece in places[-1]], first.sheet.start(first.step)):
+            LOG.warning(f"{options.run}: the section is in {said}")
+        for name, value, unit in springback(first, normal, ranges):
             print(f"{name}: {value:.4g} {unit}")

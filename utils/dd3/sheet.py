@@ -163,6 +163,11 @@ def length(points: np.ndarray) -> np.ndarray:
     return np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))))
 
 
+def of_pieces(lines: Sequence[Line], points: np.ndarray) -> str:
+    """Return words on the longest of the pieces of a section, the first, which is used; none where it is alone."""
+    return f"{len(lines)} pieces; the longest, {length(lines[0].at(points))[-1]:.4g} mm, is used" if lines[1:] else ""
+
+
 def plane(text: str) -> tuple[np.ndarray, float]:
     """Return normal and distance of a plane: "y=0", or the angle from x of a plane through the z axis, in degrees."""
     axis, equals, value = text.replace(" ", "").partition("=")

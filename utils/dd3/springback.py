@@ -8,7 +8,7 @@ import numpy as np
 
 from dd3.alignment import kabsch
 from dd3.errors import LOG
-from dd3.sheet import AXES, Line, Sheet, in_plane, length
+from dd3.sheet import AXES, Line, Sheet, in_plane, length, of_pieces
 
 ROUND_OFF = 1e-9  # distance from a plane, over the size of the sheet, of nodes that supports hold there
 ENDS = 0.1, 0.9  # places along the sheet at which the rotations are compared, over its length
@@ -156,9 +156,9 @@ def opening(line: Line, found: Springback, normal: np.ndarray) -> tuple[float, f
     return changes[0], changes[1]
 
 
-def twist(sheet: Sheet, found: Springback) -> tuple[str, float] | None:
+def twist(sheet: Sheet, found: Springback, said: list[str] | None = None) -> tuple[str, float] | None:
     """Return the axis along the sheet and the rotation of its upper end about it against the lower one, right-handed,
-    degrees; None where symmetry prevents it."""
+    degrees; None where symmetry prevents it. said: list to which words on sections in several pieces are added."""
     start = sheet.start(found.step)
     sizes = np.ptp(start, axis=0)
     axis = int(sizes.argmax())
@@ -166,8 +166,10 @@ def twist(sheet: Sheet, found: Springback) -> tuple[str, float] | None:
         return None
     turned = []
     for part in ENDS:
-        normal = np.eye(3)[axis]
-        line = sheet.cut(normal, start[:, axis].min() + part * sizes[axis], step=found.step)[0]
-        turned.append(rotation(line, found, normal))
+        normal, place = np.eye(3)[axis], start[:, axis].min() + part * sizes[axis]
+        lines = sheet.cut(normal, place, step=found.step)
+        turned.append(rotation(lines[0], found, normal))
+        if said is not None and (words := of_pieces(lines, start)):
+            said.append(f"section {AXES[axis]}={place:.6g}: {words}")
     # Sections are seen with x to the right and z upwards, so those normal to y against y.
     return AXES[axis], (turned[1] - turned[0]) * (-1.0 if AXES[axis] == "y" else 1.0)

@@ -5,11 +5,11 @@
     dd3 plot force p1000.out p10000.out --label "p = 1000" --label "p = 10000" --output force.svg
 
 A run is a folder of results or its history.csv. By default the phase is the last one that a tool controls, the tool
-the one that controls it. Its displacement and force are taken in the direction of its motion, from the start of the
-phases drawn; the force is positive where the sheet resists. For another tool, such as a pressed one, the magnitude of
-its force is drawn over the displacement of the controlling tool. Where no tool is moved by a prescribed distance, the
-force is drawn over the angle of the tool, if it turns, or the progress of the phases. A cross marks a run that stopped
-before the end of its last phase.
+the one that controls it. Its displacement and force are taken in the direction of its first motion that the sheet
+resists, from the start of the phases drawn; the force is positive where the sheet resists. For another tool, such as a
+pressed one, the magnitude of its force is drawn over the displacement of the controlling tool. Where no tool is moved
+by a prescribed distance, the force is drawn over the angle of the tool, if it turns, or the progress of the phases. A
+cross marks a run that stopped before the end of its last phase.
 """
 
 from collections.abc import Sequence
@@ -27,10 +27,13 @@ from dd3.run import read_frame, state_of
 from dd3.sheet import AXES, length
 from dd3.tables import tools_in
 
+ROUND_OFF = 1e-6  # motion in an increment, over the largest distance from the start
+RESISTED = 0.1  # force against a motion that the sheet resists, over the largest one
+
 
 @dataclass
 class Curve:
-    """Force of a tool (N) over a quantity that grows; whether the run stopped."""
+    """Force of a tool (N) over a quantity; whether the run stopped."""
 
     tool: str
     quantity: str  # with its unit
@@ -66,7 +69,7 @@ def controlling_tool(history: pd.DataFrame, phases: Sequence[str]) -> str:
     or that with the largest force."""
     rows = rows_of(history, phases)
     travel = np.ptp(history["travel"].to_numpy(float)[rows])
-    paths = {tool: np.linalg.norm(np.ptp(vector(history, tool, "u")[rows], axis=0)) for tool in tools_in(history)}
+    paths = {tool: length(vector(history, tool, "u")[rows])[-1] for tool in tools_in(history)}
     if not paths:
         raise Problem(f"{history.attrs['path']}: there is no tool")
     if travel > 0:
@@ -108,6 +111,22 @@ def abscissa(history: pd.DataFrame, tool: str, rows: np.ndarray) -> tuple[np.nda
     return 100 * progress, "progress of the phase (%)"
 
 
+def direction_of(displacement: np.ndarray, force: np.ndarray) -> np.ndarray:
+    """Return the direction of a tool's motion: that of the place farthest from the start, or the opposite one, along
+    the first motion that the sheet resists, of those there and back; along the first one where it resists none.
+    displacement, force: of the tool, (n, 3). Zero without a motion."""
+    farthest = displacement[np.linalg.norm(displacement, axis=1).argmax()]
+    distance = np.linalg.norm(farthest)
+    if distance == 0.0:
+        return np.zeros(3)
+    axis = farthest / distance
+    motion, along = np.diff(displacement @ axis), (force @ axis)[1:]
+    sense = np.where(np.abs(motion) > ROUND_OFF * distance, np.sign(motion), 0.0)
+    resisted = np.flatnonzero(-along * sense > RESISTED * np.abs(along).max())
+    moved = np.flatnonzero(sense)
+    return np.asarray(axis * (sense[resisted[0] if resisted.size else moved[0]] if moved.size else 1.0))
+
+
 def curve(history: pd.DataFrame, tool: str | None = None, phases: Sequence[str] = (), component: str = "motion"
           ) -> Curve:
     """Return the curve of a tool, by default the one that controls the phases, by default the last controlled one."""
@@ -121,9 +140,9 @@ def curve(history: pd.DataFrame, tool: str | None = None, phases: Sequence[str] 
     along, quantity = abscissa(history, leader, rows)
     displacement, force = vector(history, leader, "u")[rows], vector(history, tool, "f")[rows]
     displacement = displacement - displacement[0]
+    direction = direction_of(displacement, vector(history, leader, "f")[rows])
     shown = force[:, AXES.index(component)] if component in AXES else np.linalg.norm(force, axis=1)
-    if component == "motion" and quantity.endswith("(mm)") and displacement[-1].any():
-        direction = displacement[-1] / np.linalg.norm(displacement[-1])
+    if component == "motion" and quantity.endswith("(mm)") and direction.any():
         along = displacement @ direction
         shown = shown if leader != tool else -force @ direction
     state = state_of(Path(history.attrs["path"]).parent)  # the last phase of a run may end early
@@ -153,7 +172,8 @@ def draw(axes: Axes, curves: Sequence[Curve], labels: Sequence[str], component: 
     axes.set_ylabel(f"{common([one.tool for one in curves])} force{part} ({unit})")
     axes.ticklabel_format(useOffset=False)
     tidy(axes, "0.88")
-    axes.set_xlim(left=0.0)
+    if min(one.along.min() for one in curves) >= -0.02 * max(np.ptp(one.along) for one in curves):
+        axes.set_xlim(left=0.0)
     if min(force.min() for force in forces) >= -0.02 * largest:
         axes.set_ylim(bottom=0.0)
 

@@ -14,8 +14,8 @@ from dd3.plot import sheet as pictures
 from dd3.plot import skins
 from dd3.plot.figures import new_figure
 from dd3.report.page import Report, section_planes, table, upwards
-from dd3.section import Section
-from dd3.sheet import in_plane, plane
+from dd3.section import pieces_of
+from dd3.sheet import in_plane, of_pieces, plane
 from dd3.viewer import page as interactive
 from dd3.viewer.scene import Scene
 
@@ -91,13 +91,13 @@ def add_sections(report: Report) -> None:
     figure, axes = new_figure((8, 7), 2)
     for text in planes:
         normal, distance = plane(text)
-        line = report.sheet.cut(normal, distance)[0]
-        section = Section(report.sheet, line, report.last)
         name = text if "=" in text else f"{text} degrees"
-        axes[0].plot(section.length0, section.field("thickness")[0], ".-", markersize=3, label=name)
-        axes[1].plot(*in_plane(section.now, normal).T, ".-", markersize=3, label=name)
+        for section in pieces_of(report.sheet, report.sheet.cut(normal, distance), report.last):
+            label = name + section.named()
+            axes[0].plot(section.length0, section.field("thickness")[0], ".-", markersize=3, label=label)
+            axes[1].plot(*in_plane(section.now, normal).T, ".-", markersize=3, label=label)
     axes[0].set(xlabel="initial length along the section (mm)", ylabel="thickness (mm)")
-    axes[1].set(xlabel="in the plane of the section (mm)", ylabel="z (mm)")
+    axes[1].set(xlabel="in the plane of the section (mm)", ylabel=upwards(planes))
     axes[0].ticklabel_format(useOffset=False)
     axes[1].set_aspect("equal", adjustable="datalim")
     axes[0].legend(frameon=False)
@@ -137,21 +137,25 @@ def add_springback(report: Report) -> None:
     planes = section_planes(report)
     for text in planes:
         normal, place = plane(text)
-        line = report.sheet.cut(normal, place, step=found.step)[0]
+        lines = report.sheet.cut(normal, place, step=found.step)
         name = text if "=" in text else f"{text} degrees"
         for points, style in ((found.drawn, "--"), (found.free, "-")):
-            axes.plot(*in_plane(line.at(points), normal).T, style, color=f"C{len(rows)}", linewidth=1.3,
-                      label=f"{name}, {'drawn' if style == '--' else 'free'}")
-        ends = springback.opening(line, found, normal)
-        rows.append((f"section {name}", f"turned by {springback.rotation(line, found, normal):+.3g} degrees; its ends "
-                                        f"against that by {ends[0]:+.3g} and {ends[1]:+.3g} degrees"))
+            for line in lines:
+                axes.plot(*in_plane(line.at(points), normal).T, style, color=f"C{len(rows)}", linewidth=1.3,
+                          label=None if line is not lines[0] else f"{name}, {'drawn' if style == '--' else 'free'}")
+        ends = springback.opening(lines[0], found, normal)
+        said = of_pieces(lines, report.sheet.start(found.step))
+        rows.append((f"section {name}", f"turned by {springback.rotation(lines[0], found, normal):+.3g} degrees; its "
+                     f"ends against that by {ends[0]:+.3g} and {ends[1]:+.3g} degrees{said and '; ' + said}"))
     axes.set(xlabel="in the plane of the section (mm)", ylabel=upwards(planes))
     axes.set_aspect("equal", adjustable="datalim")
     axes.grid(True, color="0.9")
     axes.legend(frameon=False)
-    twisted = springback.twist(report.sheet, found)
+    pieces: list[str] = []
+    twisted = springback.twist(report.sheet, found, pieces)
     if twisted:
-        rows.append((f"twist about {twisted[0]} from 10 to 90 % of the length", f"{twisted[1]:+.3g} degrees"))
+        rows.append((f"twist about {twisted[0]} from 10 to 90 % of the length",
+                     "; ".join((f"{twisted[1]:+.3g} degrees", *pieces))))
     distance = found.distance()
     report.sprung = float(distance.max())
     rows.insert(0, ("largest distance from the drawn shape", f"{distance.max():.4g} mm"))
@@ -180,12 +184,13 @@ def add_measured(report: Report) -> None:
     figure, axes = new_figure((8, 3.5 * len(curves)), len(curves), squeeze=False)
     rows = []
     for measure, place in zip(curves, axes[:, 0]):
-        at, values = computed.curve(measure, report.sheet, report.history, report.mirror)
-        found = (measured.from_line(measure, np.column_stack([at, values])) if measure.over == "along"
-                 else measured.along_curve(measure, at, values))
+        pieces, said = computed.curve(measure, report.sheet, report.history, report.mirror)
+        found = (measured.from_line(measure, *map(np.column_stack, pieces)) if measure.over == "along"
+                 else measured.along_curve(measure, *pieces[0], *pieces[1:]))
         unit, scale = measured.shown_unit(measure)
         over = "degrees" if measure.over == "angle" else "mm"
-        place.plot(at, values / scale, "-", color="#0072b2", label="computed")
+        for number, (at, values) in enumerate(pieces):
+            place.plot(at, values / scale, "-", color="#0072b2", label=None if number else "computed")
         place.plot(measure.at, measure.values / scale, "o", markersize=3, color="#d55e00",
                    label=f"measured, {measure.file}")
         place.set(xlabel=f"{measure.over} ({over})", ylabel=f"{measure.title()} ({unit})")
@@ -194,7 +199,7 @@ def add_measured(report: Report) -> None:
         beyond = f"; {found.beyond} points beyond the computed curve are left out" if found.beyond else ""
         rows.append((f"{measure.title()} ({measure.file})", f"{found.points} points; largest difference "
                      f"{found.largest / scale:+.3g} {unit} at {measure.over} {found.where:.4g} {over}, rms "
-                     f"{found.rms / scale:.3g} {unit}{beyond}"))
+                     f"{found.rms / scale:.3g} {unit}{beyond}{said and '; section of ' + said}"))
     report.add("Measured curves", report.figure("measured", figure, "measured and computed curves")
                + "<p>Differences: measured less computed values; of the shape of a section distances from it, along "
                  "its upper face.</p>" + table(rows))

@@ -9,12 +9,12 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from dd3 import forming_limit, springback
-from dd3.errors import Problem
+from dd3.errors import LOG, Problem
 from dd3.forming_limit_curve import ZONES
 from dd3.nominal import at_places
 from dd3.run import read_job
 from dd3.scatter.statistics import Bands
-from dd3.sheet import Sheet, length, plane
+from dd3.sheet import Sheet, length, of_pieces, plane
 from dd3.study.vary import result, value_of
 
 SPRINGBACK, FORMING_LIMIT = "springback", "forming_limit"
@@ -106,6 +106,10 @@ def profiles(runs: Sequence[Path], name: str, mirror: Sequence[str]) -> tuple[np
     if not sign:
         raise Problem(f"'{name}' is no band; expected FIELD along PLANE, such as thinning along y=0")
     fields = [field_map(run, field, mirror) for run in runs]
+    for one in fields:
+        if said := of_pieces(one.sheet.cut(*plane(text), step=one.step), one.sheet.start(one.step)):
+            LOG.warning(f"{one.sheet.path}: section {text}: {said}")
+            break
     lines = [along(one, text) for one in fields]
     lengths = np.linspace(0, min(line[0][-1] for line in lines), COUNT)
     return lengths, np.array([np.interp(lengths, *line) for line in lines]), fields[0].label
