@@ -72,7 +72,7 @@ contains
 
   !> Return a warning if a tool was moved or pressed in the phase and has never touched the sheet,
   !> unless it stands before the sheet, by less than its thickness, in a given gap to another tool
-  !> or for the next phase, which presses it.
+  !> or for the next phase, which moves or presses it.
   function contact_warning(model, state, tool) result(text)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -95,8 +95,9 @@ contains
     if (nearest%node > 0 .and. nearest%distance >= 0.0_wp .and. &
         nearest%distance < model%thickness) then
       if (model%phase(state%phase)%gap_other(tool) > 0) return
-      if (any([(model%phase(k)%pressed(tool), &
-          k=state%phase + 1, min(state%phase + 1, size(model%phase)))])) return
+      do k = state%phase + 1, min(state%phase + 1, size(model%phase))
+        if (model%phase(k)%pressed(tool) .or. model%phase(k)%moves(tool)) return
+      end do
     end if
     text = "tool '"//model%tool(tool)%name//"' moved without touching the sheet; at its end "
     if (nearest%node > 0) then
