@@ -305,6 +305,23 @@ def test_equal_edges_of_cad(tmp_path):
     assert np.allclose(found, 80) and len(found) == 1 and "left out" not in said
 
 
+def test_cap(tmp_path):
+    """Check that the rim of a spherical cap is its one curve: not the seam and the pole of its face."""
+    with session() as gmsh:
+        gmsh.model.occ.addSphere(0, 0, 0, 20, angle1=0.6)
+        gmsh.model.occ.synchronize()
+        gmsh.write(str(tmp_path / "solid.brep"))
+        gmsh.model.occ.remove([(3, 1)])
+        gmsh.model.occ.remove([(2, tag) for _, tag in gmsh.model.getEntities(2) if gmsh.model.getType(2, tag) == "Plane"])
+        gmsh.model.occ.synchronize()
+        gmsh.write(str(tmp_path / "cap.brep"))
+    assert "a solid has no free edges" in call("curve", tmp_path / "solid.brep", tmp_path / "cap.txt", expect=2)
+    said = call("curve", tmp_path / "cap.brep", tmp_path / "cap.txt")
+    points = np.loadtxt(tmp_path / "cap.txt")
+    assert "curve 2" not in said and "left out" not in said
+    assert np.allclose(np.linalg.norm(points, axis=1), 20) and np.allclose(points[:, 2], 20 * math.sin(0.6))
+
+
 def test_features_of_cad(tmp_path):
     """Check a notch of a spline of degree 1 in a STEP file."""
     x = np.linspace(0, 100, 41)

@@ -8,6 +8,7 @@ STEP, IGES and BREP files are read by Gmsh, DXF files by ezdxf: lines, arcs, pol
 too. What of the file is not used is listed. Curves that are joined at their ends are one; each must be closed. The
 distance between the curve and the straight lines between its points is at most --chord.
 """
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -46,12 +47,16 @@ def pieces_of_cad(path: Path, chord: float, account: Account) -> list[np.ndarray
             beside = {tag: list(gmsh.model.getAdjacencies(1, tag)[0]) for tag in edges}
             for tag in (tag for tag in edges if not beside[tag]):
                 account.enter(str(path), names[tag]).leave("no border of a face")
-            edges = [tag for tag in edges if len([face for face in beside[tag] if face not in twice]) == 1]
+            # A face has the seam at which it closes twice.
+            sides = Counter(abs(tag) for face in faces if face not in twice for _, tag in
+                            gmsh.model.getBoundary([(2, face)], combined=False))
+            edges = [tag for tag in edges if sides[tag] == 1]
         found = {tag: edge_points(gmsh, tag, chord) for tag in edges}
-    points = points_only(list(found.values()))
-    found = left_out(path, found, [edges[index] for index in points], NO_LENGTH, names, account)
-    if faces:
-        return unpaired(list(found.values()))
+        box = np.reshape(gmsh.model.getBoundingBox(-1, -1), (2, 3))
+    points = [edges[index] for index in points_only(list(found.values()), float(np.ptp(box, axis=0).max()))]
+    if faces:  # those are poles
+        return unpaired([piece for tag, piece in found.items() if tag not in points])
+    found = left_out(path, found, points, NO_LENGTH, names, account)
     tags = list(found)
     same = [tags[index] for index in repeated(list(found.values()), chord)]
     return list(left_out(path, found, same, EQUAL, names, account).values())

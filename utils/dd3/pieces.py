@@ -88,9 +88,9 @@ def size_of(pieces: Sequence[np.ndarray]) -> float:
     return float(np.ptp(np.vstack(pieces), axis=0).max()) if pieces else 0.0
 
 
-def points_only(pieces: Sequence[np.ndarray]) -> list[int]:
-    """Return the indices of the pieces of length 0."""
-    least = SAME * size_of(pieces)
+def points_only(pieces: Sequence[np.ndarray], size: float = 0.0) -> list[int]:
+    """Return the indices of the pieces of length 0. size: of what they belong to, if it is larger than they are, mm."""
+    least = SAME * max(size, size_of(pieces))
     return [index for index, piece in enumerate(pieces) if length_of(piece) <= least]
 
 
