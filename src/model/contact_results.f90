@@ -93,7 +93,7 @@ contains
     type(state_t), intent(in) :: state
     real(wp), allocatable :: pressure(:)
 
-    real(wp) :: area(model%n_node), force(3, model%n_node), lambda(3, model%n_contact)
+    real(wp) :: area(model%n_node), own(model%n_node), lambda(3, model%n_contact)
     integer :: c, kind
 
     allocate (pressure(model%n_node), source=0.0_wp)
@@ -105,10 +105,11 @@ contains
         if (model%touched_faces(state%contact%tool(c)) == kind) lambda(:, c) = &
             state%contact%lambda(:, c)
       end do
-      force = model%nodal_contact_forces(state%x, lambda, state%contact%place)
       area = nodal_areas(model, state%x, kind)
-      force(1, :) = sum(nodal_normals(model, state%x, kind)*force, dim=1)/max(area, tiny(1.0_wp))
-      where (area > 0.0_wp .and. abs(force(1, :)) > abs(pressure)) pressure = force(1, :)
+      own = sum(nodal_normals(model, state%x, kind) &
+          *model%nodal_contact_forces(state%x, lambda, state%contact%place), dim=1) &
+          /max(area, tiny(1.0_wp))
+      where (area > 0.0_wp .and. abs(own) > abs(pressure)) pressure = own
     end do
   end function contact_pressures
 

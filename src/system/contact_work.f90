@@ -4,6 +4,7 @@ module dd3_system_contact_work
   use dd3_base_kinds, only : wp
   use dd3_contact_friction, only : sliding_t
   use dd3_contact_operator, only : status_gap
+  use dd3_model_contact_data, only : all_faces
   implicit none
   private
   public :: contact_work_t, new_contact_work, open_candidate
@@ -75,7 +76,8 @@ contains
     allocate (self%near(n_contact), source=.false.)
     allocate (self%sliding(n_contact))
     allocate (self%d(3, 3, n_contact), self%e(3, 3, n_contact), source=0.0_wp)
-    allocate (self%committed_x(3, n_contact), self%turning(3, n_contact), source=0.0_wp)
+    allocate (self%outward(3, n_contact, all_faces), self%committed_x(3, n_contact), &
+        self%turning(3, n_contact), source=0.0_wp)
   end subroutine new_contact_work
 
   !> Set a candidate without a tool near it.

@@ -12,6 +12,7 @@ module small_model
   use dd3_material_description, only : law_choice_t
   use dd3_material_material, only : new_material
   use dd3_sheet_surface_point, only : node_point
+  use dd3_model_contact_data, only : side_faces
   use dd3_model_model, only : model_t
   use dd3_model_part, only : new_part
   use dd3_model_rim, only : set_rim
@@ -101,7 +102,8 @@ contains
     model%phase(2)%name = "draw"
     model%phase(2)%control = 1
     allocate (model%load_set(0), model%pressure_set(0), model%drawbead(0), model%contact_face(0))
-    allocate (model%face_point(4, 0))
+    allocate (model%face_point(4, 0), model%is_rim_face(0))
+    model%touched_faces = [side_faces, side_faces]
     allocate (model%candidate(2, 2), model%member(2, model%n_node), source=.false.)
     model%tool_digest = [0, 0]
     model%n_candidate = [0, 0]
