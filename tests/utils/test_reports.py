@@ -17,7 +17,7 @@ from dd3.errors import Problem
 from dd3.forming_limit_curve import ZONES, Curve, keeler_brazier, read_curve
 from dd3.report.course import action
 from dd3.report.page import Report, section_planes
-from dd3.run import Run
+from dd3.run import Run, effort_of, read_job
 from dd3.scatter.results import field_map, profiles
 from dd3.sheet import Sheet, plane_name
 from dd3.springback import best_fit, find, opening, rotation, symmetry, twist, unfinished
@@ -420,6 +420,8 @@ def test_continued(run, tmp_path):
               "continued": {"increment": 3, "earlier": first}}
     changed(run, warnings=[near, last], seconds=1, sections={"material": 0.5},
             continued={"increment": 3, "earlier": second})
+    phases = [{"result": {"last_increment": number}} for number in (3, 5, None)]
+    assert effort_of({**read_job(run), "phases": phases}) == (5, 111)
     call("report", run, "--output", tmp_path / "report")
     page = tmp_path / "report" / "report.html"
     found = re.search("<ul class=warn>(.*?)</ul>", page.read_text())[1]

@@ -40,7 +40,7 @@ from dd3 import report as pages
 from dd3.command import new_parser
 from dd3.errors import LOG, Problem, Stopped
 from dd3.programs import add_program, command, find_program, launch, made_folder
-from dd3.run import files_of, read_job, state_of
+from dd3.run import effort_of, files_of, read_job, state_of, warnings_of
 from dd3.tools.settings import ToolSettings
 
 STAMP = "operation.json"  # in the folder of an operation: what it has read
@@ -177,8 +177,9 @@ def run_process(program: Path, process: Process, threads: int | None = None) -> 
     for operation in process.operations:
         again = run_operation(program, operation, threads)
         job = read_job(operation.folder)
+        increments, seconds = effort_of(job)
         LOG.info(f"{operation.name}: {'reached its end' if again else 'has ended before'}, "
-              f"{job['counts']['increments']} increments, {job['seconds']:.4g} s, {len(job['warnings'])} warnings; "
+              f"{increments} increments, {seconds:.4g} s, {len(warnings_of(job))} warnings; "
               f"results in {operation.folder}")
 
 
@@ -202,15 +203,15 @@ def write_report(process: Process) -> Path:
         page = pages.make(operation.folder, output=target / operation.name, mirror=process.report.get("mirror", []),
                           section=[str(plane) for plane in process.report.get("section", [])])
         job, thinning = page.job, page.field("thinning")
-        draw = page.field("equivalent_plastic_strain")
+        draw, (increments, seconds) = page.field("equivalent_plastic_strain"), effort_of(job)
         largest = max((abs(page.column(f"{tool}_fz")).max() * page.whole / 1000 for tool in page.tools), default=0.0)
         rows.append((f'<a href="{operation.name}/report.html">{html.escape(operation.name)}</a>',
                      html.escape(" ".join(job["title"].split())), html.escape(job["outcome"]["state"]),
                      job["sheet"]["elements"], f"{largest:.4g}", f"{100 * thinning.max():.3g}", f"{draw.max():.3g}",
-                     job["counts"]["increments"], len(job["warnings"]), f"{job['seconds']:.4g}",
+                     increments, len(warnings_of(job)), f"{seconds:.4g}",
                      html.escape(verdict.summary(page.verdict))))
-    head = ("operation", "title", "state", "elements", "largest force, kN", "largest thinning, %", "plastic strain",
-            "increments", "warnings", "seconds", "verdict")
+    head = ("operation", "title", "state", "elements", "largest force along z, kN", "largest thinning, %",
+            "plastic strain", "increments", "warnings", "seconds", "verdict")
     lines = ["<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows]
     path = target / "report.html"
     title = html.escape(process.title)

@@ -223,6 +223,12 @@ def parts_of(job: dict[str, Any]) -> list[tuple[dict[str, Any], float]]:
     return found
 
 
+def effort_of(job: dict[str, Any]) -> tuple[int, float]:
+    """Return the increments of a run with those that it continues, and the time of all, s."""
+    return (max(phase["result"]["last_increment"] or 0 for phase in job["phases"]),
+            sum(part["seconds"] or 0.0 for part, _ in parts_of(job)))
+
+
 def warnings_of(job: dict[str, Any]) -> list[dict[str, Any]]:
     """Return the warnings of a run and of those that it continues, without those of increments that a restart gives up,
     and once those that it repeats."""
