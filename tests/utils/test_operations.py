@@ -2,6 +2,7 @@
 """Operations: curves of CAD files, processes, outlines of blanks, tools that are corrected for springback."""
 
 import json
+import re
 import shutil
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from helpers import call
 
 import dd3
 from dd3.curve import read_curves
+from dd3.errors import Problem
 from dd3.fixture_target import aligned
 from dd3.gmsh_session import session
 from dd3.moved_tools import (
@@ -155,7 +157,7 @@ def test_process_refused(tmp_path, program):
         make_process(tmp_path, text=text)
         assert said in call(*words, expect=2)
     make_process(tmp_path, text=PROCESS.replace('deck = "op20.dat"', 'deck = "op20.dat"\nname = "op10"'))
-    assert "folder of two operations" in call(*words, expect=2)
+    assert "two operations are named 'op10'" in call(*words, expect=2)
     make_process(tmp_path, first=STRIP.replace("displace", "displaec"), second=CUT.replace("rim.txt", "none.txt"))
     said = call(*words, expect=2)
     assert "op10.dat:19: error E112" in said and "none.txt" in said and not (tmp_path / "op10.out").exists()
@@ -232,6 +234,12 @@ def test_outline():
     assert abs(new[0, 0] - new[-1, 0]) < 1e-2 and abs(new[16, 1] - new[17, 1]) < 1e-2
     assert wanted.distance(np.array([0.0, 2.8])) == pytest.approx(1.0, abs=2e-3)
     assert wanted.distance(np.array([0.3, 0.0])) < -1.4
+    # A collar that is too long, within a curve or above a height, needs a larger hole.
+    rim = rim_of(circle[:, :2], 2.0)
+    collar = Rim(rim.initial, rim.position, -rim.onward, rim.stretch)
+    beyond = excess(collar, None, Outline(2.2 * circle), -1)
+    assert np.allclose(beyond, 0.2, atol=1e-2)
+    assert np.allclose(np.linalg.norm(moved(circle, collar, beyond, -1)[:, :2], axis=1), 1.1, atol=1e-2)
 
 
 def test_outline_by_height():
@@ -241,6 +249,18 @@ def test_outline_by_height():
     slope = np.array([0.6, 0.0, 0.8])
     rim = Rim(circle, np.column_stack((circle, np.full(40, 3.2))), np.tile(slope, (40, 1)), np.ones(40))
     assert np.allclose(excess(rim, 3.0, None), 0.25)
+
+
+def test_curves_of_users(tmp_path):
+    """Curves are read as *TRIM reads them; what is no curve is told with its line."""
+    path = tmp_path / "rim.txt"
+    path.write_text("# a triangle\n0 0 0\n1.4d1 0 0  # corner\n0 1E1 0\n0 0 0\n\n1 1 0\n2 1 0\n2 2 0\n")
+    first, second = read_curves(path)
+    assert np.allclose(first, [[0, 0, 0], [14, 0, 0], [0, 10, 0]]) and len(second) == 3
+    for text, said in ("x y z\n0 0 0\n", "rim.txt:1: error: expected x y z"), ("0 0\n", "not '0 0'"), ("#\n", "no curve"):
+        path.write_text(text)
+        with pytest.raises(Problem, match=re.escape(said)):
+            read_curves(path)
 
 
 def test_moved_surface(tmp_path):

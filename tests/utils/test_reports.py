@@ -7,6 +7,7 @@ import logging
 import math
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import h5py
 import numpy as np
@@ -20,7 +21,7 @@ from dd3.report.page import Report, section_planes
 from dd3.run import Run, effort_of, read_job
 from dd3.scatter.results import field_map, profiles
 from dd3.sheet import Sheet, plane_name
-from dd3.springback import best_fit, find, opening, rotation, symmetry, twist, unfinished
+from dd3.springback import best_fit, find, opening, rotation, steps_with_tools, symmetry, twist, unfinished
 from dd3.surface_strain import cell_strains
 
 # Parts of the profile: length along it and turn. The wall is an arc of radius 100 mm.
@@ -532,6 +533,11 @@ def test_springback(tmp_path):
     text = (tmp_path / "report" / "report.html").read_text()
     assert "<h2>Springback</h2>\n<p>Not judged: the release ended at 10 %.</p>" in text
     assert said in [": ".join(item) for item in Run(folder).verdict()]
+    # A phase that opens the tools is not that of the drawn shape.
+    opened = SimpleNamespace(file={"job": {"phase": [1, 1, 2, 2, 3]}}, count=5, grid={"PointData": {"contact_status": 0}},
+                             values=lambda step, _: (np.array([0, step < 2]), ""))
+    phases = [{"number": number, "tools": [{"active": number < 3}]} for number in (1, 2, 3)]
+    assert list(steps_with_tools(opened, phases)) == [0, 1]
     # A run that only releases a sheet of another one takes it over in its drawn shape.
     taken_over = [{"number": number, "name": name, "unload": True, "tools": []} for number, name in enumerate("ab", 1)]
     assert np.allclose(find(sheet, taken_over).distance(), distance)

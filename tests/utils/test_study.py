@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Studies: parameters of an input file varied, their table and pictures, indices, and wrong input."""
 
+import os
 import csv
 import importlib.util
 import itertools
@@ -107,7 +108,16 @@ def test_files_of_runs(program):
         call(*words)
         row = rows_of(Path("bar.study"))[0]
         found.append((float(row["right_rx"]), row["seconds"]))
+    # In the same folder, another input file that is older than the run.
+    Path("other.dat").write_text(DECK.replace("size = 4 2 1", "size = 4 4 1"))
+    old = Path("bar.study").stat().st_mtime - 3600
+    for file in (Path("other.dat"), Path("bar.dat"), Path("law", "m.inc"), law):
+        os.utime(file, (old, old))
+    for deck in ("bar.dat", "other.dat"):
+        call("study", deck, *words[2:], "--work", "both")
+        found.append((float(rows_of(Path("both"))[0]["right_rx"]), ""))
     forces = [force for force, _ in found]
+    assert forces[5] != pytest.approx(forces[4], rel=0.1)
     assert forces[1] / forces[0] == pytest.approx(2, rel=0.01) and forces[3] < forces[0]
     assert found[2] == found[1]
 

@@ -22,6 +22,7 @@ from dd3.dxf import EQUAL, NO_LENGTH, pieces_of_dxf
 from dd3.errors import LOG, Problem
 from dd3.gmsh_session import session
 from dd3.pieces import JOIN, length_of, points_only, repeated, sampled, size_of
+from dd3.tables import read_text
 from dd3.tools.cad_account import enter_cad
 from dd3.tools.cad_file import refuse_cut
 
@@ -157,15 +158,22 @@ def write_curves(target: Path, curves: Sequence[np.ndarray], source: object) -> 
 
 
 def read_curves(path: Path) -> list[np.ndarray]:
-    """Read curves that `write_curves` has written."""
+    """Read curves as *TRIM does; the first vertex is not repeated at their end."""
     blocks: list[list[list[float]]] = [[]]
-    for line in path.read_text(encoding="utf-8").splitlines():
-        words = line.partition("#")[0].split()
+    for number, line in enumerate(read_text(path).splitlines(), 1):
+        words = line.partition("#")[0].lower().replace("d", "e").split()
         if words:
-            blocks[-1].append([float(word) for word in words])
+            try:
+                x, y, z = map(float, words)
+            except ValueError:
+                raise Problem(f"{path}:{number}: error: expected x y z, mm, not '{line.strip()}'") from None
+            blocks[-1].append([x, y, z])
         elif blocks[-1] and not line.strip():
             blocks.append([])
-    return [np.array(block) for block in blocks if block]
+    found = [np.array(block[:-1] if len(block) > 1 and block[0] == block[-1] else block) for block in blocks if block]
+    if not found:
+        raise Problem(f"{path}: error: no curve; expected lines x y z, mm")
+    return found
 
 
 def main(words: Sequence[str] | None = None) -> None:

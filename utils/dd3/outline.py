@@ -120,14 +120,14 @@ class Outline:
         return self.turn * np.stack((mean[:, 1], -mean[:, 0]), axis=1)
 
 
-def excess(rim: Rim, height: float | None, wanted: Outline | None) -> np.ndarray:
-    """Return the length by which the sheet reaches beyond the wanted rim at its nodes, mm."""
+def excess(rim: Rim, height: float | None, wanted: Outline | None, side: int = 1) -> np.ndarray:
+    """Return the length by which the sheet reaches beyond the wanted rim at its nodes, mm. side: -1 for a hole."""
     if wanted is not None:
         away = np.array([wanted.distance(point) for point in rim.position[:, :2]])
         flat = np.linalg.norm(rim.onward[:, :2], axis=1)
         if flat.min() < 0.3:
             raise Problem("the rim is steep: a curve in plan does not define its length; give --height")
-        return away / flat
+        return side * away / flat
     assert height is not None
     slope = rim.onward[:, 2]
     if abs(slope).min() < 0.3:
@@ -135,14 +135,15 @@ def excess(rim: Rim, height: float | None, wanted: Outline | None) -> np.ndarray
     return (rim.position[:, 2] - height) / slope
 
 
-def moved(points: np.ndarray, rim: Rim, beyond: np.ndarray) -> np.ndarray:
-    """Return an outline moved inwards by the excess of the rim, in lengths of the initial sheet. Between the ends of
-    the rim its vertices are the nodes of the rim; beyond planes of symmetry they move with the nearest end."""
+def moved(points: np.ndarray, rim: Rim, beyond: np.ndarray, side: int = 1) -> np.ndarray:
+    """Return an outline moved inwards, that of a hole outwards (side: -1), by the excess of the rim, in lengths of the
+    initial sheet. Between the ends of the rim its vertices are the nodes of the rim; beyond planes of symmetry they
+    move with the nearest end."""
     outline = Outline(points)
     total = outline.start[-1]
     arc = np.array([outline.closest(point)[0] for point in rim.initial])
     order = np.argsort(arc)
-    arc, shift = arc[order], -(beyond / rim.stretch)[order]
+    arc, shift = arc[order], -side * (beyond / rim.stretch)[order]
     gaps = np.diff(np.concatenate((arc, arc[:1] + total)))
     first = (int(gaps.argmax()) + 1) % len(arc)
     arc = np.concatenate((arc[first:], arc[:first] + total))
@@ -160,15 +161,16 @@ def moved(points: np.ndarray, rim: Rim, beyond: np.ndarray) -> np.ndarray:
     return vertices
 
 
-def outline_file(program: Path, operation: Operation) -> Path:
-    """Return the file of curves of the first cut of an input file."""
+def outline_file(program: Path, operation: Operation) -> tuple[Path, int]:
+    """Return the file of curves of the first cut of an input file, and the side that stays: 1 inside, -1 outside."""
     job, errors = check_deck(program, operation)
     if errors:
         raise Problem(errors)
     for block in job["input"]["blocks"]:
-        for entry in block["entries"]:
-            if block["keyword"] == "trim" and entry["key"] == "file" and entry["at"]:
-                return Path(entry["at"]["file"]).parent / entry["value"]
+        entries = {entry["key"]: entry for entry in block["entries"]}
+        if block["keyword"] == "trim" and "file" in entries and entries["file"]["at"]:
+            return (Path(entries["file"]["at"]["file"]).parent / entries["file"]["value"],
+                    -1 if "keep" in entries and entries["keep"]["value"] == "outside" else 1)
     raise Problem(f"{operation.deck}: error: no *TRIM with a file of curves")
 
 
@@ -177,7 +179,8 @@ def find_outline(program: Path, process: Process, name: str, height: float | Non
     """Run the draws; return the largest and the mean deviation of each, mm."""
     work = made_folder(process.path.parent / f"{process.path.stem}.outline")
     first = process.operations[0]
-    curves = read_curves(outline_file(program, first))
+    source, side = outline_file(program, first)
+    curves = read_curves(source)
     wanted = Outline(read_curves(rim_file)[0]) if rim_file else None
     found: list[tuple[float, float]] = []
     outlines: list[list[np.ndarray]] = []
@@ -187,7 +190,7 @@ def find_outline(program: Path, process: Process, name: str, height: float | Non
         write_curves(path, curves, f"draw {draw} of dd3 outline {process.path.name}")
         outlines.append(curves)
         first.settings[name] = str(path.resolve())
-        if not outline_file(program, first).samefile(path):
+        if not outline_file(program, first)[0].samefile(path):
             raise Problem(f"{first.deck}: error: the parameter '{name}' is not the file of curves of its *TRIM")
         stopped = run_with(program, process, [], {}, threads)
         if stopped and not found:
@@ -195,13 +198,13 @@ def find_outline(program: Path, process: Process, name: str, height: float | Non
         if stopped:
             break
         rim = rim_on(process.operations[-1].folder, curves[0])
-        beyond = excess(rim, height, wanted)
+        beyond = excess(rim, height, wanted, side)
         found.append((float(abs(beyond).max()), float(abs(beyond).mean())))
         LOG.info(f"draw {draw}: {len(beyond)} nodes of the rim, {beyond.min():+.3f} to {beyond.max():+.3f} mm beyond "
                  "it")
         if found[-1][0] <= tolerance or draw == draws:
             break
-        curves = [moved(curves[0], rim, beyond), *curves[1:]]
+        curves = [moved(curves[0], rim, beyond, side), *curves[1:]]
     best = int(np.argmin([largest for largest, _ in found]))
     if best < len(outlines) - 1:
         again = run_with(program, process, [first], {name: str((work / f"outline_{best + 1}.txt").resolve())}, threads)

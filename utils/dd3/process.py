@@ -107,8 +107,8 @@ def read_process(path: Path) -> Process:
         if not deck.is_file():
             raise Problem(f"{path}: error: the deck '{row['deck']}'{where} does not exist")
         operations.append(Operation(row.get("name", deck.stem), deck.resolve(), row.get("set", {})))
-        if len({operation.folder for operation in operations}) < number:
-            raise Problem(f"{path}: error: {operations[-1].folder} is the folder of two operations; give one a name")
+        if len({operation.name for operation in operations}) < number:
+            raise Problem(f"{path}: error: two operations are named '{operations[-1].name}'; give one another name")
     if not operations:
         raise Problem(f"{path}: error: no [[operation]]")
     return Process(path, table.get("title", path.stem), operations, table.get("report", {}),

@@ -89,12 +89,23 @@ def kept(mirror: Sequence[str]) -> str:
 
 
 def steps_with_tools(sheet: Sheet, phases: Sequence[dict]) -> np.ndarray:
-    """Return the steps of the phases in which tools act; phases: those of run.json."""
+    """Return the steps of the phases at whose end tools act on the sheet, not of those that open them; phases: those of
+    run.json."""
     of_step = sheet.file["job"].get("phase")
     if of_step is None:
         return np.array([], int)
-    held = [phase["number"] for phase in phases if any(tool["active"] for tool in phase["tools"])]
-    return np.flatnonzero(np.isin(np.array(of_step[: sheet.count]), held))
+    numbers = np.array(of_step[: sheet.count])
+    held = []
+    for phase in phases:
+        own = np.flatnonzero(numbers == phase["number"])
+        if own.size and any(tool["active"] for tool in phase["tools"]) and touched(sheet, int(own[-1])):
+            held.append(phase["number"])
+    return np.flatnonzero(np.isin(numbers, held))
+
+
+def touched(sheet: Sheet, step: int) -> bool:
+    """Whether a tool touches the sheet at a step; true for results without contact."""
+    return "contact_status" not in sheet.grid["PointData"] or bool(sheet.values(step, "contact_status")[0].any())
 
 
 def state_of(phase: dict) -> str:

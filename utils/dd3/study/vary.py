@@ -119,10 +119,14 @@ def combinations(parameters: Sequence[tuple[str, list[str]]], work: Path, settin
     return found
 
 
-def is_old(folder: Path, deck: Path) -> bool:
-    """Whether a file that the run in a folder reads has changed since its start, whose time is known to a second, or at
-    least since its end."""
-    job = read_job(folder)
+def is_old(case: Case, deck: Path) -> bool:
+    """Whether the run in the folder of a case is that of another input file or other parameters, or a file that it
+    reads has changed since its start, whose time is known to a second, or at least since its end."""
+    job, folder = read_job(case.folder), case.folder
+    used = Path(job["command"]["working_directory"]) / job["command"]["file"]
+    settings = {f"{name}={value}" for name, value in {**case.settings, **case.values}.items()}
+    if set(job["command"]["settings"]) != settings or not (used.exists() and deck.samefile(used)):
+        return True
     since = min(datetime.fromisoformat(job["started"]).timestamp() + RESOLUTION,
                 (folder / "run.json").stat().st_mtime)
     return any(path.stat().st_mtime > since for path in (deck, *files_of(job)))
@@ -131,7 +135,7 @@ def is_old(folder: Path, deck: Path) -> bool:
 def make(case: Case, program: Path, deck: Path) -> None:
     """Run a case unless it has ended; an interrupted run is continued."""
     case.state = state_of(case.folder)
-    old = bool(case.state) and is_old(case.folder, deck)
+    old = bool(case.state) and is_old(case, deck)
     if old:
         case.state = ""
     if case.state in ("reached", "stopped"):
