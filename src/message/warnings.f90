@@ -96,7 +96,7 @@ contains
           "The whole sheet. A grip or another support is no plane of symmetry."), &
       row("W030", "tool that touches side and rim of the sheet", &
           "Where they meet, contact forces act over the areas of both, along their mean normal.", &
-          "`contact = z_max`, `z_min` or `rim`.")]
+          "A set of one: `z_max`, `rim`.")]
   end function input_warnings
 
   !> Return the warnings during a run.

@@ -81,11 +81,11 @@ contains
     integer, intent(in) :: kind
     real(wp), allocatable :: area(:)
 
-    logical :: touched(size(model%contact_face))
+    logical :: chosen(size(model%contact_face))
 
-    touched = model%touched(kind)
-    area = areas_over(model, x, touched)
-    if (any(.not. touched)) area = merge(area, areas_over(model, x, .not. touched), area > 0.0_wp)
+    chosen = model%faces_of_kind(kind)
+    area = areas_over(model, x, chosen)
+    if (any(.not. chosen)) area = merge(area, areas_over(model, x, .not. chosen), area > 0.0_wp)
   end function point_areas
 
   !> Return the areas of the contact points of this rank over some contact faces, `(n_contact)`,
@@ -139,13 +139,13 @@ contains
     integer, intent(in) :: kind
     real(wp), allocatable :: area(:)
 
-    logical :: touched(size(model%contact_face))
+    logical :: chosen(size(model%contact_face))
     integer :: f
 
     allocate (area(model%n_node), source=0.0_wp)
-    touched = model%touched(kind)
+    chosen = model%faces_of_kind(kind)
     do f = 1, size(model%contact_face)
-      if (.not. touched(f)) cycle
+      if (.not. chosen(f)) cycle
       associate (node => model%face%node(:, model%contact_face(f)))
         if (size(node) > 4) then
           area(node) = area(node) + areas_of_face(model, x, f, 1)

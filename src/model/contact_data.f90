@@ -51,7 +51,7 @@ module dd3_model_contact_data
     !> tool is never pressed.
     integer, allocatable :: tool_row(:)
   contains
-    procedure :: touched
+    procedure :: faces_of_kind
     procedure :: nodal_contact_forces
     procedure :: own_contact_forces
   end type contact_data_t
@@ -59,13 +59,13 @@ module dd3_model_contact_data
 contains
 
   !> Return which contact faces are of a kind, `(size(contact_face))`.
-  pure function touched(self, kind)
+  pure function faces_of_kind(self, kind) result(chosen)
     class(contact_data_t), intent(in) :: self
     integer, intent(in) :: kind
-    logical :: touched(size(self%contact_face))
+    logical :: chosen(size(self%contact_face))
 
-    touched = kind == all_faces .or. (self%is_rim_face .eqv. kind == rim_faces)
-  end function touched
+    chosen = kind == all_faces .or. (self%is_rim_face .eqv. kind == rim_faces)
+  end function faces_of_kind
 
   !> Return the forces on the nodes, `(3, n_node)`, N, that have the same work as those at the
   !> contact points of all ranks.

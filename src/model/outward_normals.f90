@@ -22,13 +22,13 @@ contains
     integer, intent(in) :: kind
     real(wp), allocatable :: normal(:, :)
 
-    logical :: touched(size(model%contact_face))
+    logical :: chosen(size(model%contact_face))
     real(wp), allocatable :: other(:, :)
 
-    touched = model%touched(kind)
-    normal = mean_normals(model%face, pack(model%contact_face, touched), x)
-    if (all(touched)) return
-    other = mean_normals(model%face, pack(model%contact_face, .not. touched), x)
+    chosen = model%faces_of_kind(kind)
+    normal = mean_normals(model%face, pack(model%contact_face, chosen), x)
+    if (all(chosen)) return
+    other = mean_normals(model%face, pack(model%contact_face, .not. chosen), x)
     where (spread(norm2(normal, dim=1) <= 0.0_wp, 1, 3)) normal = other
   end function nodal_normals
 

@@ -287,7 +287,7 @@ contains
 
     type(place_t) :: place
     integer, allocatable :: kept(:)
-    integer :: e, k, p, q, start
+    integer :: e, i, k, p, q, start
 
     associate (grid => cut%grid, corner => cut%patch%corner, n => new%mesh%n_element)
       allocate (new%stress(6, element%n_point, n))
@@ -310,8 +310,8 @@ contains
             place = locate(grid, cut%plane, matmul(cut%patch%plane(:, corner(:, q)), &
                 bilinear(element%point(:2, p))), start)
             call transfer_point(sheet, grid, cut%plane, element, k, p, place, &
-                new%mesh%material(e), new%stress(:, p, e), new%internal_variables(:, p, e), &
-                new%orientation(:, :, p, e))
+                new%mesh%material([(element_number(cut, q, i), i=1, grid%n_layer)]), &
+                new%stress(:, p, e), new%internal_variables(:, p, e), new%orientation(:, :, p, e))
           end do
         end do
       end do

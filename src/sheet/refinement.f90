@@ -12,7 +12,7 @@ module dd3_sheet_refinement
   use dd3_mesh_mesh, only : mesh_t
   use dd3_sheet_grid, only : grid_t
   use dd3_sheet_location, only : bilinear, corner_sign
-  use dd3_sheet_transfer, only : axes_at, bounded_mean, linear_weights, mean_axes, quads_around, &
+  use dd3_sheet_transfer, only : axes_at, bounded_mean, linear_weights, mean_axes, quads_alike, &
       values_at
   implicit none
   private
@@ -214,7 +214,7 @@ contains
   end function point_columns
 
   !> Find from which points the quarters of a quadrilateral take their values: those around them in
-  !> elements of the same materials, whose internal variables have the same meaning.
+  !> elements of the same materials.
   pure subroutine new_source(self, grid, mesh, natural, quad)
     type(source_t), intent(out) :: self
     type(grid_t), intent(in) :: grid
@@ -228,11 +228,7 @@ contains
     real(wp) :: place(2)
     integer :: i, j, n, quadrant
 
-    around = quads_around(grid, quad)
-    associate (material => mesh%material)
-      around = pack(around, [(all(material(grid%element(:, around(i))) == &
-          material(grid%element(:, quad))), i=1, size(around))])
-    end associate
+    around = quads_alike(grid, quad, mesh%material, mesh%material(grid%element(:, quad)))
     plane = in_tangent_plane(grid, mesh%x, around)
     n = size(natural, 2)
     allocate (donor(2, n*size(around)), self%weight(n*size(around), n, 4))

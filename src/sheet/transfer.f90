@@ -20,7 +20,7 @@ module dd3_sheet_transfer
   use dd3_sheet_sheet, only : sheet_t
   implicit none
   private
-  public :: axes_at, bounded_mean, linear_weights, mean_axes, quads_around, transfer_point, &
+  public :: axes_at, bounded_mean, linear_weights, mean_axes, quads_alike, transfer_point, &
       values_at
 
   !> Softening of the weights, over the distance of the farthest point.
@@ -42,17 +42,15 @@ contains
     integer, intent(in) :: layer, level
     !> Place on the old grid.
     type(place_t), intent(in) :: place
-    !> Material of the element.
-    integer, intent(in) :: material
+    !> Materials of the elements of its column, from the bottom.
+    integer, intent(in) :: material(:)
     real(wp), intent(out) :: stress(:), internal_variables(:), orientation(:, :)
 
     real(wp), allocatable :: weight(:)
-    integer, allocatable :: around(:), donor(:, :)
+    integer, allocatable :: donor(:, :)
 
-    around = quads_around(grid, place%quad)
-    around = pack(around, old%mesh%material(grid%element(layer, around)) == material)
-    if (size(around) == 0) around = [place%quad]
-    call find_weights(grid, plane, element, layer, level, place, around, donor, weight)
+    call find_weights(grid, plane, element, layer, level, place, &
+        quads_alike(grid, place%quad, old%mesh%material, material), donor, weight)
     stress = bounded_mean(values_at(old%stress, donor), weight)
     internal_variables = bounded_mean(values_at(old%internal_variables, donor), weight)
     orientation = mean_axes(axes_at(old%orientation, donor), weight)
@@ -181,6 +179,24 @@ contains
     weight = weight*(row(1, 1) + row(2, 1)*near(1, :) + row(3, 1)*near(2, :))
     weight = weight/sum(weight)
   end function linear_weights
+
+  !> Return those of a quadrilateral and its neighbours whose elements have given materials, as the
+  !> internal variables of other materials have another meaning; the first alone if there is none.
+  pure function quads_alike(grid, quad, material, wanted) result(alike)
+    type(grid_t), intent(in) :: grid
+    integer, intent(in) :: quad
+    !> Material of each element, `(n_element)`, and those wanted, from the bottom, `(n_layer)`.
+    integer, intent(in) :: material(:), wanted(:)
+    integer, allocatable :: alike(:)
+
+    integer :: i
+
+    associate (around => quads_around(grid, quad))
+      alike = pack(around, [(all(material(grid%element(:, around(i))) == wanted), &
+          i=1, size(around))])
+    end associate
+    if (size(alike) == 0) alike = [quad]
+  end function quads_alike
 
   !> Return a quadrilateral and those that have a corner in common with it.
   pure function quads_around(grid, quad) result(around)

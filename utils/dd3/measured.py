@@ -21,6 +21,7 @@ import numpy as np
 
 from dd3.columns import Line, lines_of
 from dd3.errors import Problem
+from dd3.pieces import distances
 
 LENGTH = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "µm": 1e-3, "um": 1e-3, "in": 25.4, "inch": 25.4}
 FORCE = {"N": 1.0, "kN": 1e3, "MN": 1e6, "mN": 1e-3, "lbf": 4.448222}
@@ -150,15 +151,9 @@ def along_curve(measured: Measured, at: np.ndarray, values: np.ndarray, *others:
 def from_line(measured: Measured, *lines: np.ndarray) -> Difference:
     """Return the distances of measured points from the nearest of computed lines (n, 2); points beyond the ends
     count."""
-    away = np.min([distances(np.column_stack([measured.at, measured.values]), line) for line in lines], axis=0)
+    points = np.column_stack([measured.at, measured.values])[:, None]
+    away = np.min([distances(points, line[:-1], line[1:]).min(axis=1) for line in lines], axis=0)
     return difference(measured, np.ones(len(away), bool), away)
-
-
-def distances(points: np.ndarray, line: np.ndarray) -> np.ndarray:
-    """Return the distances of points from a line, both (n, 2)."""
-    start, step = line[:-1], np.diff(line, axis=0)
-    part = np.clip(((points[:, None] - start) * step).sum(axis=2) / np.maximum((step**2).sum(axis=1), 1e-30), 0, 1)
-    return np.asarray(np.linalg.norm(points[:, None] - start - part[..., None] * step, axis=2).min(axis=1))
 
 
 def difference(measured: Measured, inside: np.ndarray, away: np.ndarray) -> Difference:
