@@ -113,6 +113,11 @@ contains
 
     released = "released"
     if (phase%unload) released = "released, by unload,"
+    do i = 1, size(phase%hold)
+      if (withdrawn(phase%hold(i)%tool) .and. .not. phase%at_once) call errors%push_input( &
+          phase%hold(i)%at, "a tool cannot be held and "//released//" in the same phase", &
+          "no hold, or release of the tools that leave alone", code="E124")
+    end do
     do i = 1, size(phase%press)
       if (withdrawn(phase%press(i)%tool)) call errors%push_input(phase%press(i)%at, &
           "a tool cannot be pressed and "//released//" in the same phase", code="E124")

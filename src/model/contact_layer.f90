@@ -2,8 +2,11 @@
 !> Contact layer of the tools in the compliant formulation, and penalty in the mixed one. A tool may
 !> start at the sheet, inside the height of its layer. So that the sheet starts without pressure,
 !> the layer begins behind its place by what is missing, and advances to it over the first part of
-!> the phase. The penalty of the augmented Lagrangian does not change the converged solution; it
-!> weighs gap and slip against forces where the contact status is decided.
+!> the phase. What is left of the offset at the end of the phase, or what a change of the layer or
+!> of the formulation makes necessary, stays as long as the tool is held, and goes when it moves or
+!> is pressed: the sheet between held tools keeps its force. The penalty of the augmented Lagrangian
+!> does not change the converged solution; it weighs gap and slip against forces where the contact
+!> status is decided.
 module dd3_model_contact_layer
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : largest_over_ranks, sum_over_ranks
@@ -18,7 +21,7 @@ module dd3_model_contact_layer
   implicit none
   private
   public :: layer_at, deflection_at, border_at, contact_penalty, starting_offset, held_offsets
-  public :: offset_factor, offset_rate, progress_left
+  public :: layer_offset, layer_advances, offset_rate, progress_left
 
   !> Part of the phase over which the layers advance.
   real(wp), parameter :: advance = 0.1_wp
@@ -89,12 +92,28 @@ contains
         *model%contact_stiffness(c, side_faces)
   end function contact_penalty
 
-  !> Return the part of a layer's offset that is left at a progress of the phase.
-  pure real(wp) function offset_factor(progress)
-    real(wp), intent(in) :: progress
+  !> Whether the layer of a tool advances to its place in a phase.
+  pure logical function layer_advances(model, number, tool)
+    type(model_t), intent(in) :: model
+    !> Number of the phase.
+    integer, intent(in) :: number
+    integer, intent(in) :: tool
 
-    offset_factor = progress_left(progress)/advance
-  end function offset_factor
+    associate (phase => model%phase(number))
+      layer_advances = model%begins(number, tool) .or. phase%pressed(tool) .or. phase%moves(tool)
+    end associate
+  end function layer_advances
+
+  !> Return the offset of the layer of a tool at the progress of a state, mm.
+  pure real(wp) function layer_offset(model, state, tool)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: tool
+
+    layer_offset = state%start%layer_offset(tool)
+    if (layer_advances(model, state%phase, tool)) layer_offset = layer_offset &
+        *progress_left(state%progress)/advance
+  end function layer_offset
 
   !> Return the progress after which the layers are in their places.
   pure real(wp) function progress_left(progress)
@@ -104,15 +123,21 @@ contains
     if (progress_left <= no_progress) progress_left = 0.0_wp
   end function progress_left
 
-  !> Return the derivative of the offset factor behind a progress.
-  pure real(wp) function offset_rate(progress)
-    real(wp), intent(in) :: progress
+  !> Return the derivative of the offset of a layer behind the progress of a state, mm.
+  pure real(wp) function offset_rate(model, state, tool)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: tool
 
-    offset_rate = merge(-1.0_wp/advance, 0.0_wp, progress_left(progress) > 0.0_wp)
+    offset_rate = 0.0_wp
+    if (.not. progress_left(state%progress) > 0.0_wp) return
+    if (layer_advances(model, state%phase, tool)) offset_rate = &
+        -state%start%layer_offset(tool)/advance
   end function offset_rate
 
   !> Return the offset with which a tool starts, mm: such that the sheet keeps the force on a tool
-  !> in contact in the mean of its points, and that a tool without contact has no pressure.
+  !> in contact in the mean of its points, and that a tool without contact has no pressure in its
+  !> layer. It is negative for a layer that is lower than the one before.
   function starting_offset(model, phase, state, tool) result(offset)
     type(model_t), intent(in) :: model
     type(phase_t), intent(in) :: phase
@@ -134,7 +159,7 @@ contains
       layer = layer_at(model, phase, tool, c)
       hint = hint_t()
       call find_on_tool(model%tool(tool), state%placement(tool), &
-          model%contact_point(c)%position(state%x), hint, layer%height, &
+          model%contact_point(c)%position(state%x), hint, phase%search_distance, &
           model%tolerance%committed_depth + deflection_at(model, state, c) &
           + state%tools%layer_offset(tool), hit, border=border_at(model, phase, c))
       if (.not. hit%found) cycle
@@ -147,8 +172,8 @@ contains
     end do
     call largest_over_ranks(1, missing)
     call sum_over_ranks(2, sums)
-    offset = missing(1)
-    if (sums(1) > 0.0_wp) offset = max(0.0_wp, sums(2)/sums(1))
+    offset = merge(missing(1), 0.0_wp, phase%layer > 0.0_wp)
+    if (sums(1) > 0.0_wp) offset = sums(2)/sums(1)
   end function starting_offset
 
   !> Return the offsets at the points that prescribed displacements hold along the normal, mm,

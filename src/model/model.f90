@@ -59,6 +59,8 @@ module dd3_model_model
     procedure :: turns
     procedure :: tilts
     procedure :: least_shear
+    procedure :: begins
+    procedure :: returns
   end type model_t
 
 contains
@@ -96,5 +98,26 @@ contains
       end if
     end do
   end function least_shear
+
+  !> Whether a tool begins to have contact in a phase: it has none in the phase before.
+  pure logical function begins(self, number, tool)
+    class(model_t), intent(in) :: self
+    !> Number of the phase.
+    integer, intent(in) :: number
+    integer, intent(in) :: tool
+
+    begins = self%phase(number)%active(tool)
+    if (begins .and. number > 1) begins = .not. self%phase(number - 1)%acts(tool)
+  end function begins
+
+  !> Whether a phase names a tool that an earlier one released, so that it has contact again.
+  pure logical function returns(self, number, tool)
+    class(model_t), intent(in) :: self
+    !> Number of the phase.
+    integer, intent(in) :: number
+    integer, intent(in) :: tool
+
+    returns = number > 1 .and. self%begins(number, tool)
+  end function returns
 
 end module dd3_model_model

@@ -26,6 +26,7 @@ module dd3_model_nodal_conditions
     type(motion_t), allocatable :: motion(:)
   contains
     procedure :: held
+    procedure :: led
   end type nodal_conditions_t
 
 contains
@@ -66,5 +67,19 @@ contains
       held(self%support(2, k), self%support(1, k)) = .true.
     end do
   end function held
+
+  !> Return the directions that prescribed displacements hold without the chosen supports,
+  !> `(3, n_node)`.
+  pure function led(self)
+    class(nodal_conditions_t), intent(in) :: self
+    logical, allocatable :: led(:, :)
+
+    integer :: k
+
+    led = self%prescribed
+    do k = 1, size(self%support, 2)
+      led(self%support(2, k), self%support(1, k)) = .false.
+    end do
+  end function led
 
 end module dd3_model_nodal_conditions

@@ -58,6 +58,8 @@ module dd3_model_phase
     procedure :: fading
     procedure :: fading_rate
     procedure :: next_kink
+    procedure :: path
+    procedure :: progress_after
   end type phase_t
 
 contains
@@ -109,5 +111,25 @@ contains
         next_place(self%turn_table, progress), next_place(self%press_table, progress))
     if (progress < self%opening - step) next_kink = min(next_kink, self%opening)
   end function next_kink
+
+  !> Return the path of the controlling tool at a progress, mm; 0 if loads control.
+  pure real(wp) function path(self, progress)
+    class(phase_t), intent(in) :: self
+    real(wp), intent(in) :: progress
+
+    path = progress*self%length
+    if (self%control == 0) return
+    if (self%withdrawn(self%control)) path = self%opened(self%control, progress)
+  end function path
+
+  !> Return the progress at which the controlling tool has moved along its path by a length.
+  pure real(wp) function progress_after(self, path) result(progress)
+    class(phase_t), intent(in) :: self
+    !> mm.
+    real(wp), intent(in) :: path
+
+    progress = path/self%length
+    if (self%withdrawn(self%control)) progress = self%opening + (1.0_wp - self%opening)*progress
+  end function progress_after
 
 end module dd3_model_phase

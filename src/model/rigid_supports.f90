@@ -10,10 +10,10 @@ module dd3_model_rigid_supports
   use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
   implicit none
   private
-  public :: choose_supports, name_of_support
+  public :: choose_supports, name_of_support, supports_hold
 
   !> Nodes with a support are taken, such as those of a plane of symmetry, if their component is at
-  !> least this fraction of the largest.
+  !> least this fraction of the largest. Supports that were chosen elsewhere hold by as much.
   real(wp), parameter :: sufficient = 0.1_wp
   !> Relative difference below which two components count as equal; the lower node number wins.
   real(wp), parameter :: equal = 1.0e-6_wp
@@ -58,6 +58,36 @@ contains
       projector = projector - spread(row, 2, 6)*spread(row, 1, 6)
     end do
   end subroutine choose_supports
+
+  !> Whether supports that were chosen at other positions stop the free motions at these.
+  logical function supports_hold(x, prescribed, support, bound)
+    !> As for `choose_supports`.
+    real(wp), intent(in) :: x(:, :)
+    logical, intent(in) :: prescribed(:, :)
+    integer, intent(in) :: support(:, :), bound(:)
+
+    type(rigid_motion_t) :: body
+    real(wp) :: projector(6, 6), row(6), component, factor(3, size(x, 2))
+    logical :: allowed(size(x, 2))
+    integer :: n, k, place(2)
+
+    call new_rigid_motion(body, x)
+    call body%hold_prescribed(x, prescribed)
+    call body%free_projector(projector, n)
+    allowed = .true.
+    allowed(bound) = .false.
+    factor = 1.0_wp
+    supports_hold = n == size(support, 2)
+    do k = 1, n
+      if (.not. supports_hold) return
+      call find_largest(body, x, allowed, factor, projector, place, component)
+      row = matmul(projector, body%condition(x(:, support(1, k)), identity(:, support(2, k))))
+      supports_hold = norm2(row) >= sufficient*component
+      if (.not. supports_hold) return
+      row = row/norm2(row)
+      projector = projector - spread(row, 2, 6)*spread(row, 1, 6)
+    end do
+  end function supports_hold
 
   !> Find the nodal direction with the largest component in the free motions.
   subroutine find_largest(body, x, allowed, weight, projector, place, component)

@@ -5,7 +5,7 @@ module dd3_process_forces
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : any_rank, largest_over_ranks, sum_over_ranks
   use dd3_model_bound_nodes, only : forces_on_bound, give_to_parents, share_bound
-  use dd3_model_contact_layer, only : offset_factor
+  use dd3_model_contact_layer, only : layer_offset
   use dd3_model_model, only : model_t
   use dd3_model_pressed_tools, only : tool_balance
   use dd3_model_tool_supports, only : on_spacer, support_balance, support_matrix
@@ -28,8 +28,8 @@ contains
     integer :: tool
 
     associate (start => trial%start)
-      trial%tools%layer_offset = offset_factor(trial%progress)*start%layer_offset
       do tool = 1, model%n_tool
+        trial%tools%layer_offset(tool) = layer_offset(model, trial, tool)
         trial%tools%load(:, tool) = model%phase(trial%phase)%tool_load(tool, trial%progress, &
             start%tool_load(:, tool), start%tool_load_end(:, tool))
       end do

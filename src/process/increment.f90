@@ -86,7 +86,7 @@ contains
       if (abs(1.0_wp - trial%progress) < progress_tolerance) trial%progress = 1.0_wp
       attempt%ends_phase = trial%progress >= 1.0_wp
       trial%travel = committed%travel &
-          + (trial%progress - committed%progress)*phase%length
+          + phase%path(trial%progress) - phase%path(committed%progress)
       trial%time = committed%time + (trial%progress - committed%progress)*phase%duration
       trial%contact%hint%due = .true.
       call set_rotations(phase, trial)

@@ -9,7 +9,7 @@ module dd3_process_limiters
   use dd3_contact_operator, only : status_gap
   use dd3_linalg_tensor, only : symmetric_eigen, tensor_from_kelvin
   use dd3_sheet_surface_point, only : surface_point_t
-  use dd3_model_contact_layer, only : progress_left
+  use dd3_model_contact_layer, only : offset_rate, progress_left
   use dd3_model_model, only : model_t
   use dd3_model_pressed_tools, only : motion_at
   use dd3_model_state, only : state_t
@@ -61,6 +61,8 @@ contains
     !> Gets the limit, and that of the contact forces alone.
     type(stepper_t), intent(inout) :: stepper
 
+    integer :: t
+
     associate (attempt => stepper%attempt, limit => stepper%attempt%limit, &
         phase => model%phase(state%phase), limits => model%phase(state%phase)%limits)
       limit = limit_t(r=limits%r_max%value, limiter="r_max")
@@ -81,7 +83,7 @@ contains
       call apply("gap", gap_limit)
       call apply("opening", opening_limit)
       call apply("until", until_limit)
-      if (any(state%start%layer_offset > 0.0_wp)) then
+      if (any([(abs(offset_rate(model, state, t)) > 0.0_wp, t=1, model%n_tool)])) then
         call end_after("layer", progress_left(state%progress))
       end if
       call end_after("output", next_output_progress(model%output, phase, state) - state%progress)

@@ -105,16 +105,16 @@ contains
 
     progress = huge(1.0_wp)
     if (phase%length <= 0.0_wp) return
-    travel = state%progress*phase%length
+    travel = phase%path(state%progress)
     select case (output%fields)
     case (fields_every)
       associate (interval => output%fields_value(1))
-        progress = (aint(travel/interval + progress_tolerance) + 1)*interval/phase%length
+        progress = phase%progress_after((aint(travel/interval + progress_tolerance) + 1)*interval)
       end associate
     case (fields_at)
       do i = 1, size(output%fields_value)
         if (output%fields_value(i) <= travel + progress_tolerance*phase%length) cycle
-        progress = output%fields_value(i)/phase%length
+        progress = phase%progress_after(output%fields_value(i))
         exit
       end do
     case default

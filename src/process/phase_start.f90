@@ -17,6 +17,7 @@ module dd3_process_phase_start
   use dd3_model_pressed_tools, only : begin_tilts
   use dd3_model_tool_supports, only : spacer_room
   use dd3_model_reactions, only : reactions
+  use dd3_model_rigid_supports, only : choose_supports, supports_hold
   use dd3_model_state, only : state_t
   use dd3_model_terms_list, only : external_forces
   use dd3_model_terms_released, only : hold_released
@@ -27,7 +28,7 @@ module dd3_process_phase_start
   use dd3_tools_closest, only : hint_t, hit_t
   implicit none
   private
-  public :: begin_phase, check_returns, gap_of_tool, return_tools
+  public :: begin_phase, check_returns, gap_of_tool, place_supports, return_tools
 
   !> Largest number of advances of a pressed tool towards the sheet; each covers the smallest gap.
   integer, parameter :: most_advances = 200
@@ -64,7 +65,7 @@ contains
     call free_directions(model, number, state, force, lost)
     call give_up_stresses(model, state, force)
     do tool = 1, model%n_tool
-      if (returns(model, number, tool)) state%contact%hint(tool, :) = hint_t()
+      if (model%returns(number, tool)) state%contact%hint(tool, :) = hint_t()
     end do
     state%phase = number
     state%begun = .true.
@@ -134,17 +135,6 @@ contains
     force = external_forces(state%term, model, state%configuration_t)
   end subroutine fade_stresses
 
-  !> Whether a phase names a tool that an earlier one released, so that it has contact again.
-  pure logical function returns(model, number, tool)
-    type(model_t), intent(in) :: model
-    !> Number of the phase.
-    integer, intent(in) :: number
-    integer, intent(in) :: tool
-
-    returns = number > 1 .and. model%phase(number)%active(tool)
-    if (returns) returns = .not. model%phase(number - 1)%acts(tool)
-  end function returns
-
   !> Put the tools that the phase before withdrew along paths of the program's choice back to where
   !> they were: they have no contact, and a phase that names them again tells their motion from
   !> there.
@@ -160,7 +150,29 @@ contains
         state%tools%displacement = state%start%tool_displacement
   end subroutine return_tools
 
-  !> Set the layers of tools that begin to act back by the clearance that is missing.
+  !> Choose the supports of a phase that unloads the sheet anew where those of the start positions
+  !> do not hold it: it has turned since.
+  subroutine place_supports(model, number, x)
+    type(model_t), intent(inout) :: model
+    !> Number of the phase.
+    integer, intent(in) :: number
+    !> Positions of the nodes at its start, `(3, n_node)`, mm.
+    real(wp), intent(in) :: x(:, :)
+
+    logical :: led(3, model%n_node)
+
+    associate (phase => model%phase(number))
+      if (size(phase%support, 2) == 0) return
+      led = phase%led()
+      if (supports_hold(x, led, phase%support, model%bound_nodes())) return
+      call choose_supports(x, led, phase%support, model%bound_nodes())
+      phase%prescribed = led
+      if (.not. phase%floats) phase%prescribed = phase%held()
+    end associate
+  end subroutine place_supports
+
+  !> Set the offsets of the layers of tools that begin to act, and of all where the layer or the
+  !> formulation of the contact changes.
   subroutine place_layers(model, number, state)
     type(model_t), intent(in) :: model
     !> Number of the phase.
@@ -169,14 +181,15 @@ contains
     type(state_t), intent(inout) :: state
 
     integer :: tool
-    logical :: begins
+    logical :: changes
 
+    changes = .false.
     associate (phase => model%phase(number))
+      if (number > 1) changes = abs(phase%layer - model%phase(number - 1)%layer) > 0.0_wp
       do tool = 1, model%n_tool
-        begins = phase%active(tool) .and. (number == 1 .or. returns(model, number, tool))
-        if (number > 1) begins = begins .or. phase%layer > model%phase(number - 1)%layer
-        if (begins) state%tools%layer_offset(tool) = starting_offset(model, phase, state, tool)
-        if (.not. phase%layer > 0.0_wp) state%tools%layer_offset(tool) = 0.0_wp
+        if (.not. phase%active(tool)) cycle
+        if (.not. (changes .or. model%begins(number, tool))) cycle
+        state%tools%layer_offset(tool) = starting_offset(model, phase, state, tool)
       end do
     end associate
   end subroutine place_layers
@@ -193,19 +206,24 @@ contains
 
     type(hit_t), allocatable :: hit(:)
     type(nearest_t) :: deepest
-    integer :: tool
+    character(len=:), allocatable :: advice
+    integer :: tool, k
 
     do tool = 1, model%n_tool
-      if (.not. returns(model, number, tool)) cycle
+      if (.not. model%returns(number, tool)) cycle
       hit = candidate_hits(model, tool, state%placement(tool), state%x, &
           model%tolerance%start_search, wrong_side_depth*model%largest_thickness())
       deepest = nearest_candidate(model, hit%distance, hit%distance, &
           hit%found .and. -hit%distance > start_depth)
       if (deepest%node == 0) cycle
+      advice = "release it by `unload = on` instead of `at_once`, with a move clear of the sheet"
+      if (any([(model%phase(k)%withdrawn(tool), k=1, number - 1)])) then
+        advice = "move the tool clear of the sheet in the phase that releases it"
+      end if
       call fatal_error(error, "phase '"//model%phase(number)%name//"' brings back tool '"// &
           model%tool(tool)%name//"', which was released, but node "// &
           to_text(deepest%node)//" is "//to_text(-deepest%distance, 3)// &
-          " mm inside it: move the tool clear of the sheet in the phase that releases it", "E206")
+          " mm inside it: "//advice, "E206")
       return
     end do
   end subroutine check_returns

@@ -127,7 +127,7 @@ contains
           self%progress)
       problem%bound_force = forces_on_bound(model, unbalanced_forces(model, committed))
       call give_to_parents(model, committed%x, problem%residual)
-      call move_contacts(self, committed, system)
+      call move_contacts(self, model, committed, system)
       problem%prescribed = factor*phase%displacement
       call add_motions(self, model, phase, committed, problem%prescribed)
       do tool = 1, model%n_tool
@@ -148,21 +148,20 @@ contains
   end subroutine impose_trial
 
   !> Set the change of the contact forces by the layers that advance and the tools that turn.
-  subroutine move_contacts(self, committed, system)
+  subroutine move_contacts(self, model, committed, system)
     type(prediction_t), intent(in) :: self
+    type(model_t), intent(in) :: model
     type(state_t), intent(in) :: committed
     type(system_t), intent(inout) :: system
 
-    real(wp) :: rate
     integer :: c
 
     system%problem%contact_residual = 0.0_wp
-    rate = offset_rate(committed%progress)
     associate (contact => system%contact)
       do c = 1, size(contact%tool)
         if (contact%tool(c) == 0) cycle
         system%problem%contact_residual(:, c) = self%progress*matmul(contact%d(:, :, c), &
-            rate*committed%start%layer_offset(contact%tool(c))*contact%normal(:, c) &
+            offset_rate(model, committed, contact%tool(c))*contact%normal(:, c) &
             - contact%turning(:, c))
       end do
     end associate

@@ -69,7 +69,8 @@ contains
       row%attempt = attempt%number
       row%phase = phase%name
       row%elements = model%n_element
-      row%travel = committed%travel + attempt%limit%r*stepper%prediction%progress*phase%length
+      row%travel = committed%travel + phase%path(committed%progress &
+          + attempt%limit%r*stepper%prediction%progress) - phase%path(committed%progress)
       row%r = attempt%limit%r
       row%limiter = attempt%limit%limiter
       row%limiter_element = attempt%limit%element

@@ -52,17 +52,8 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
 
-    logical :: prescribed(3, model%n_node)
-    integer :: k
-
-    associate (phase => model%phase(state%phase))
-      prescribed = phase%prescribed
-      do k = 1, size(phase%support, 2)
-        prescribed(phase%support(2, k), phase%support(1, k)) = .false.
-      end do
-    end associate
     call new_rigid_motion(body, state%x)
-    call body%hold_prescribed(state%x, prescribed)
+    call body%hold_prescribed(state%x, model%phase(state%phase)%led())
   end subroutine new_body
 
   !> Return a warning if the forces on the sheet at the start of the running phase, or the loads

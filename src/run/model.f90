@@ -17,7 +17,8 @@ module dd3_run_model
   use dd3_model_state, only : state_t
   use dd3_output_run_summary, only : run_summary_t
   use dd3_process_phase_end, only : next_output_progress, phase_is_over
-  use dd3_process_phase_start, only : begin_phase, check_returns, return_tools
+  use dd3_process_phase_start, only : begin_phase, check_returns, place_supports, &
+      return_tools
   use dd3_process_predictor, only : new_prediction
   use dd3_process_taken_over, only : balance_sheet, take_up
   use dd3_report_refinement_warnings, only : late_warning
@@ -76,6 +77,7 @@ contains
     call new_thread_choice(run%threads, start%threads)
     run%committed = start%state
     start%state = state_t()
+    if (run%committed%begun) call place_supports(model, run%committed%phase, run%committed%start%x)
     call summary%start(size(model%phase), run%committed)
     run%summary = summary
     run%options = solver_options(start)
@@ -178,6 +180,7 @@ contains
         call return_tools(model, number, committed)
         call check_returns(model, number, committed, error)
         if (allocated(error)) return
+        call place_supports(model, number, committed%x)
         call begin_phase(model, number, committed)
         call start_notes(model, committed, notes)
         call tell_all(log, notes)
@@ -234,6 +237,7 @@ contains
       call run%adaptivity%refine(case, marked, model, run%committed, error)
       if (allocated(error)) return
       if (model%n_element == before) return
+      call place_supports(model, run%committed%phase, run%committed%start%x)
       profile = run%stepper%system%profile
       call run%stepper%system%solver%release()
       call new_system(run%stepper%system, model, run%options, error)

@@ -16,13 +16,14 @@ module dd3_setup_held_loads
     integer :: phase = 0, load = 0
     !> Direction: 1, 2, 3.
     integer :: axis = 0
-    !> Number of nodes held, and of all nodes of the set.
-    integer :: held = 0, n_node = 0
+    !> Number of nodes held, of those held in all phases in which the load acts, and of all nodes
+    !> of the set.
+    integer :: held = 0, always_held = 0, n_node = 0
   end type held_load_t
 
 contains
 
-  !> Report loads along a direction that is held at all nodes of the set.
+  !> Report loads along a direction that is held at all nodes of the set as long as they act.
   subroutine check_loads(model, case, errors)
     !> With its phases.
     type(model_t), intent(in) :: model
@@ -34,7 +35,7 @@ contains
 
     call find_held_loads(model, case, found)
     do i = 1, size(found)
-      if (found(i)%held < found(i)%n_node) cycle
+      if (found(i)%always_held < found(i)%n_node) cycle
       associate (load => case%phase(found(i)%phase)%load(found(i)%load), &
           axis => axis_name(found(i)%axis))
         call errors%push_input(load%at, "the load along "//axis//" on '"//load%set// &
@@ -67,7 +68,7 @@ contains
     end do
   end subroutine check_pressures
 
-  !> Find the loads given in the phases that are held in part or in whole.
+  !> Find the loads given in the phases that are held there in part or in whole.
   pure subroutine find_held_loads(model, case, found)
     type(model_t), intent(in) :: model
     type(case_t), intent(in) :: case
@@ -85,7 +86,7 @@ contains
             if (model%load_set(s)%name /= case%phase(i)%load(k)%set) cycle
             associate (node => model%load_set(s)%node)
               this = held_load_t(i, k, axis, count(model%phase(i)%prescribed(axis, node)), &
-                  size(node))
+                  count(held_throughout(model, i, s, axis)), size(node))
             end associate
             if (this%held > 0) found = [found, this]
           end do
@@ -93,5 +94,22 @@ contains
       end do
     end do
   end subroutine find_held_loads
+
+  !> Return the nodes of a set that are held along an axis in all phases in which a load on it acts.
+  pure function held_throughout(model, number, set, axis) result(held)
+    type(model_t), intent(in) :: model
+    !> Number of the phase that gives the load, and of its set.
+    integer, intent(in) :: number, set
+    integer, intent(in) :: axis
+    logical :: held(size(model%load_set(set)%node))
+
+    integer :: i
+
+    held = model%phase(number)%prescribed(axis, model%load_set(set)%node)
+    do i = number + 1, size(model%phase)
+      if (.not. model%phase(i)%loads%keeps(set)) return
+      held = held .and. model%phase(i)%prescribed(axis, model%load_set(set)%node)
+    end do
+  end function held_throughout
 
 end module dd3_setup_held_loads

@@ -62,7 +62,7 @@ contains
       model%phase(i)%unloaded = unloaded
       model%phase(i)%has_gravity = case%phase(i)%has_gravity
       call set_supports(model, unloaded, led, model%phase(i))
-      call set_drawbeads(model, i, unloaded, before%beads%active, model%phase(i))
+      call set_drawbeads(model, i, any(case%phase(:i)%unload), before, model%phase(i))
       call set_loads(case%phase(i), model, model%phase(i))
       before = model%phase(i)
     end do
@@ -212,6 +212,8 @@ contains
     type(phase_spec_t), intent(in) :: spec
     type(phase_t), intent(inout) :: phase
 
+    !> Part of the phase in which the controlling tool moves.
+    real(wp) :: moving
     integer :: i, t
 
     do i = 1, size(spec%hold)
@@ -252,8 +254,10 @@ contains
     phase%length = 0.0_wp
     if (spec%control == 0) return
     phase%length = norm2(phase%move(:, spec%control))
-    if (phase%length > 0.0_wp) phase%trial = spec%trial/phase%length
-    if (spec%speed > 0.0_wp) phase%duration = phase%length/spec%speed
+    moving = 1.0_wp
+    if (phase%withdrawn(spec%control)) moving = 1.0_wp - phase%opening
+    if (phase%length > 0.0_wp) phase%trial = moving*spec%trial/phase%length
+    if (spec%speed > 0.0_wp) phase%duration = phase%length/spec%speed/moving
   end subroutine set_tools
 
   !> Withdraw a tool that has contact, by its `move` in the phase or else along its line.
@@ -313,19 +317,21 @@ contains
   end subroutine set_supports
 
   !> Set which draw-beads act from their first phase on: those of an active tool, and those without
-  !> a tool as long as the sheet is not unloaded. They leave with their tool, those without one with
-  !> all tools.
+  !> a tool until the sheet is unloaded for the first time. They leave with their tool, those
+  !> without one with all tools. One that returns with its tool begins anew.
   pure subroutine set_drawbeads(model, number, unloaded, before, phase)
     type(model_t), intent(in) :: model
     !> Of the phase.
     integer, intent(in) :: number
+    !> Whether this phase or an earlier one unloads the sheet.
     logical, intent(in) :: unloaded
-    !> Beads that act in the phase before, `(n_bead)`.
-    logical, intent(in) :: before(:)
+    type(phase_t), intent(in) :: before
     type(phase_t), intent(inout) :: phase
 
+    logical :: acts_before(size(model%drawbead))
     integer :: b
 
+    acts_before = before%beads%active .and. .not. before%beads%leaves
     phase%beads%active = .not. unloaded
     phase%beads%leaves = spread(unloaded .and. any(phase%withdrawn), 1, size(model%drawbead))
     do b = 1, size(model%drawbead)
@@ -336,9 +342,9 @@ contains
       end associate
     end do
     phase%beads%active = phase%beads%active .and. number >= model%drawbead%from
-    phase%beads%leaves = phase%beads%leaves .and. before
+    phase%beads%leaves = phase%beads%leaves .and. acts_before
     phase%beads%active = phase%beads%active .or. phase%beads%leaves
-    phase%beads%new = phase%beads%active .and. .not. before
+    phase%beads%new = phase%beads%active .and. .not. acts_before
   end subroutine set_drawbeads
 
 end module dd3_setup_phases

@@ -96,7 +96,7 @@ contains
       if (tool > 0) then
         penalty = candidate_penalty(model, model%phase(trial%phase), c, hit%normal, slip)
         contact%onset(c) = 0.0_wp
-        contact%distance(c) = hit%distance
+        contact%distance(c) = hit%distance + trial%tools%layer_offset(tool)
         contact%status(c) = contact_status(hit%normal, contact%distance(c), &
             trial%contact%lambda(:, c), slip, penalty, model%tool(tool)%friction, &
             contact%sliding(c))
@@ -181,16 +181,17 @@ contains
     if (contact%tool(c) == 0) return
     associate (phase => model%phase(committed%phase), tool => contact%tool(c))
       contact%onset(c) = 0.0_wp
-      contact%distance(c) = hit%distance
+      contact%distance(c) = hit%distance + committed%tools%layer_offset(tool)
       friction = model%tool(tool)%friction
       leaving = dot_product(phase%tool_rate(tool, committed%progress, &
           committed%start%tool_displacement) + contact%turning(:, c), hit%normal) < 0.0_wp
       if (.not. touching(tool)) then
         contact%status(c) = status_gap
-        if (hit%distance <= model%tolerance%touch .and. .not. leaving) then
+        if (contact%distance(c) <= model%tolerance%touch .and. .not. leaving) then
           contact%status(c) = status_stick
         end if
-      else if (contact%status(c) == status_gap .and. .not. leaving .and. hit%distance < 0.0_wp) then
+      else if (contact%status(c) == status_gap .and. .not. leaving .and. &
+          contact%distance(c) < 0.0_wp) then
         contact%status(c) = status_slip
         friction = coulomb(0.0_wp)
       end if

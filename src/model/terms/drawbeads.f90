@@ -144,16 +144,18 @@ contains
     logical, intent(inout) :: lost
 
     type(drawbeads_t) :: remaining
+    logical :: remains(size(model%drawbead))
 
     if (size(self%load) == 0 .or. number == 1) return
-    associate (active => model%phase(number)%beads%active, new => model%phase(number)%beads%new)
-      if (all(active .or. .not. model%phase(number - 1)%beads%active)) return
+    associate (beads => model%phase(number)%beads)
+      remains = beads%active .and. .not. beads%new
+      if (all(remains .or. .not. model%phase(number - 1)%beads%active)) return
       select type (self)
       type is (drawbeads_t)
         remaining = self
       end select
       call remaining%keep()
-      call find_bead_points(model, active .and. .not. new, state%x, remaining%point, &
+      call find_bead_points(model, remains, state%x, remaining%point, &
           state%tools%displacement)
       call remaining%evaluate(model, state, state)
     end associate
@@ -163,15 +165,25 @@ contains
   end subroutine lose
 
   !> Set the fractions of the normal forces. That of a bead grows to 1 over the phase in which it
-  !> begins to act and, if that ended early, over the next one.
+  !> begins to act and, if that ended early, over the next one. The restraint of a bead that begins
+  !> to act has no history, also if its tool had left and returns.
   subroutine begin_phase(self, model, number, state)
     class(drawbeads_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     integer, intent(in) :: number
     type(configuration_t), intent(in) :: state
 
+    integer :: b
+
     self%normal = self%normal_fraction(state%progress)
-    where (model%phase(number)%beads%new) self%normal = 0.0_wp
+    do b = 1, size(model%drawbead)
+      if (.not. model%phase(number)%beads%new(b)) cycle
+      self%normal(b) = 0.0_wp
+      associate (bead => model%drawbead(b))
+        self%force(bead%offset + 1:bead%offset + size(bead%line, 3)) = 0.0_wp
+        self%path(bead%offset + 1:bead%offset + size(bead%line, 3)) = 0.0_wp
+      end associate
+    end do
   end subroutine begin_phase
 
   !> Return the fraction of the normal force of each bead that acts.
