@@ -196,12 +196,13 @@ contains
     integer :: s, tool
 
     associate (phase => model%phase(number))
-      call digest%add([phase%control, phase%until%kind, phase%until%tool])
+      call digest%add([phase%control, phase%until%kind, phase%until%tool, &
+          merge(1, 0, phase%unloaded)])
       call digest%add([phase%length, phase%duration, phase%until%value])
       do tool = 1, model%n_tool
         call add_tool(digest, phase, tool, model%tool(tool)%name)
       end do
-      prescribed = phase%prescribed .and. .not. model%fixed
+      prescribed = phase%led() .and. .not. model%fixed
       call digest%add(reshape(prescribed, [size(prescribed)]))
       call digest%add(reshape(phase%displacement, [size(phase%displacement)]))
       do s = 1, size(model%load_set)

@@ -78,8 +78,8 @@ contains
     allowed(bound) = .false.
     factor = 1.0_wp
     supports_hold = n == size(support, 2)
+    if (.not. supports_hold) return
     do k = 1, n
-      if (.not. supports_hold) return
       call find_largest(body, x, allowed, factor, projector, place, component)
       row = matmul(projector, body%condition(x(:, support(1, k)), identity(:, support(2, k))))
       supports_hold = norm2(row) >= sufficient*component

@@ -159,6 +159,7 @@ contains
           state%tools%displacement)
       call remaining%evaluate(model, state, state)
     end associate
+    if (all(abs(self%load - remaining%load) <= 0.0_wp)) return
     force = force - (self%load - remaining%load)
     self%load = remaining%load
     lost = .true.
