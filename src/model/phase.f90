@@ -112,14 +112,17 @@ contains
     if (progress < self%opening - step) next_kink = min(next_kink, self%opening)
   end function next_kink
 
-  !> Return the path of the controlling tool at a progress, mm; 0 if loads control.
-  pure real(wp) function path(self, progress)
+  !> Return the path of the controlling tool between two values of the progress, mm; 0 if loads
+  !> control.
+  pure real(wp) function path(self, from, to)
     class(phase_t), intent(in) :: self
-    real(wp), intent(in) :: progress
+    real(wp), intent(in) :: from, to
 
-    path = progress*self%length
+    path = (to - from)*self%length
     if (self%control == 0) return
-    if (self%withdrawn(self%control)) path = self%opened(self%control, progress)
+    associate (tool => self%control)
+      if (self%withdrawn(tool)) path = self%opened(tool, to) - self%opened(tool, from)
+    end associate
   end function path
 
   !> Return the progress at which the controlling tool has moved along its path by a length.

@@ -85,8 +85,7 @@ contains
       trial%progress = committed%progress + r*prediction%progress
       if (abs(1.0_wp - trial%progress) < progress_tolerance) trial%progress = 1.0_wp
       attempt%ends_phase = trial%progress >= 1.0_wp
-      trial%travel = committed%travel &
-          + phase%path(trial%progress) - phase%path(committed%progress)
+      trial%travel = committed%travel + phase%path(committed%progress, trial%progress)
       trial%time = committed%time + (trial%progress - committed%progress)*phase%duration
       trial%contact%hint%due = .true.
       call set_rotations(phase, trial)

@@ -105,7 +105,7 @@ contains
 
     progress = huge(1.0_wp)
     if (phase%length <= 0.0_wp) return
-    travel = phase%path(state%progress)
+    travel = phase%path(0.0_wp, state%progress)
     select case (output%fields)
     case (fields_every)
       associate (interval => output%fields_value(1))

@@ -69,8 +69,8 @@ contains
       row%attempt = attempt%number
       row%phase = phase%name
       row%elements = model%n_element
-      row%travel = committed%travel + phase%path(committed%progress &
-          + attempt%limit%r*stepper%prediction%progress) - phase%path(committed%progress)
+      row%travel = committed%travel + phase%path(committed%progress, committed%progress &
+          + attempt%limit%r*stepper%prediction%progress)
       row%r = attempt%limit%r
       row%limiter = attempt%limit%limiter
       row%limiter_element = attempt%limit%element
