@@ -116,7 +116,7 @@ contains
     do i = 1, size(phase%hold)
       if (withdrawn(phase%hold(i)%tool) .and. .not. phase%at_once) call errors%push_input( &
           phase%hold(i)%at, "a tool cannot be held and "//released//" in the same phase", &
-          "no hold, or release of the tools that leave alone", code="E124")
+          "no hold, or release of the other tools only", code="E124")
     end do
     do i = 1, size(phase%press)
       if (withdrawn(phase%press(i)%tool)) call errors%push_input(phase%press(i)%at, &

@@ -14,7 +14,10 @@ module dd3_model_configuration
   use dd3_tools_placement, only : placement_t
   implicit none
   private
-  public :: configuration_t, phase_start_t
+  public :: configuration_t, phase_start_t, no_offset
+
+  !> Offset of the contact layer at points that are not held along the normal, mm.
+  real(wp), parameter :: no_offset = -huge(1.0_wp)
 
   !> Values set at the start of a phase: initial values, and final forces on the tools.
   type :: phase_start_t
@@ -24,7 +27,7 @@ module dd3_model_configuration
     !> Force pressed on the tools at the start and at the end of the phase, `(3, n_tool)`, N.
     real(wp), allocatable :: tool_load(:, :), tool_load_end(:, :)
     !> Distance by which the contact layer of each tool lies behind its place, `(n_tool)`, mm, and
-    !> by which it does at points that are held along the normal, `(n_contact)`, negative for
+    !> by which it does at points that are held along the normal, `(n_contact)`, `no_offset` for
     !> others.
     real(wp), allocatable :: layer_offset(:), held_offset(:)
     !> Positions of the nodes, `(3, n_node)`, mm.

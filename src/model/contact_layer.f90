@@ -3,15 +3,16 @@
 !> start at the sheet, inside the height of its layer. So that the sheet starts without pressure,
 !> the layer begins behind its place by what is missing, and advances to it over the first part of
 !> the phase. What is left of the offset at the end of the phase, or what a change of the layer or
-!> of the formulation makes necessary, stays as long as the tool is held, and goes when it moves or
-!> is pressed: the sheet between held tools keeps its force. The penalty of the augmented Lagrangian
-!> does not change the converged solution; it weighs gap and slip against forces where the contact
-!> status is decided.
+!> of the formulation makes necessary, stays as long as the tool is held or withdrawn, and goes when
+!> it moves otherwise or is pressed: the sheet between held tools keeps its force. The penalty of
+!> the augmented Lagrangian does not change the converged solution; it weighs gap and slip against
+!> forces where the contact status is decided.
 module dd3_model_contact_layer
   use dd3_base_kinds, only : wp
   use dd3_base_ranks, only : largest_over_ranks, sum_over_ranks
   use dd3_contact_compliant, only : layer_t, new_layer, place_under_force
   use dd3_contact_operator, only : status_gap
+  use dd3_model_configuration, only : configuration_t, no_offset
   use dd3_model_contact_data, only : side_faces
   use dd3_model_model, only : model_t
   use dd3_model_phase, only : is_normal_held, phase_t
@@ -21,7 +22,7 @@ module dd3_model_contact_layer
   implicit none
   private
   public :: layer_at, deflection_at, border_at, contact_penalty, starting_offset, held_offsets
-  public :: layer_offset, layer_advances, offset_rate, progress_left
+  public :: layer_offset, layer_advances, offset_at, offset_rate, progress_left
 
   !> Part of the phase over which the layers advance.
   real(wp), parameter :: advance = 0.1_wp
@@ -101,6 +102,7 @@ contains
 
     associate (phase => model%phase(number))
       layer_advances = model%begins(number, tool) .or. phase%pressed(tool) .or. phase%moves(tool)
+      layer_advances = layer_advances .and. .not. phase%withdrawn(tool)
     end associate
   end function layer_advances
 
@@ -122,6 +124,15 @@ contains
     progress_left = max(0.0_wp, advance - progress)
     if (progress_left <= no_progress) progress_left = 0.0_wp
   end function progress_left
+
+  !> Return the distance by which the layer of a tool lies behind its place at a point, mm.
+  pure real(wp) function offset_at(state, tool, c)
+    class(configuration_t), intent(in) :: state
+    integer, intent(in) :: tool, c
+
+    offset_at = state%tools%layer_offset(tool)
+    if (state%start%held_offset(c) > no_offset) offset_at = state%start%held_offset(c)
+  end function offset_at
 
   !> Return the derivative of the offset of a layer behind the progress of a state, mm.
   pure real(wp) function offset_rate(model, state, tool)
@@ -159,9 +170,10 @@ contains
       layer = layer_at(model, phase, tool, c)
       hint = hint_t()
       call find_on_tool(model%tool(tool), state%placement(tool), &
-          model%contact_point(c)%position(state%x), hint, phase%search_distance, &
-          model%tolerance%committed_depth + deflection_at(model, state, c) &
-          + state%tools%layer_offset(tool), hit, border=border_at(model, phase, c))
+          model%contact_point(c)%position(state%x), hint, &
+          max(layer%height, phase%search_distance), model%tolerance%committed_depth &
+          + deflection_at(model, state, c) + state%tools%layer_offset(tool), hit, &
+          border=border_at(model, phase, c))
       if (.not. hit%found) cycle
       force = 0.0_wp
       if (state%contact%tool(c) == tool .and. state%contact%status(c) /= status_gap) then
@@ -177,7 +189,7 @@ contains
   end function starting_offset
 
   !> Return the offsets at the points that prescribed displacements hold along the normal, mm,
-  !> negative at others, `(n_contact)`: such that the force stays that at the start of the phase.
+  !> `no_offset` at others, `(n_contact)`: such that the force stays that at the start of the phase.
   !> The displacements there do not follow from the contact.
   function held_offsets(model, phase, state) result(offset)
     type(model_t), intent(in) :: model
@@ -189,10 +201,10 @@ contains
     type(hint_t) :: hint
     type(hit_t) :: hit
     type(layer_t) :: layer
-    real(wp) :: force
+    real(wp) :: force, kept
     integer :: c, t, i
 
-    allocate (offset(model%n_contact), source=-1.0_wp)
+    allocate (offset(model%n_contact), source=no_offset)
     if (.not. phase%layer > 0.0_wp) return
     do c = 1, model%n_contact_fixed
       associate (point => model%contact_point(c))
@@ -202,9 +214,10 @@ contains
           layer = layer_at(model, phase, t, c)
           hint = hint_t()
           call find_on_tool(model%tool(t), state%placement(t), &
-              model%contact_point(c)%position(state%x), hint, layer%height, &
-              model%tolerance%committed_depth + deflection_at(model, state, c) &
-              + state%tools%layer_offset(t), hit, border=border_at(model, phase, c))
+              model%contact_point(c)%position(state%x), hint, &
+              max(layer%height, phase%search_distance), model%tolerance%committed_depth &
+              + deflection_at(model, state, c) + offset_at(state, t, c), hit, &
+              border=border_at(model, phase, c))
           if (.not. hit%found) cycle
           if (.not. all([(is_normal_held(phase, point%node(i), hit%normal), &
               i=1, point%n_surface)])) cycle
@@ -212,7 +225,10 @@ contains
           if (state%contact%tool(c) == t) force = max(0.0_wp, &
               -dot_product(state%contact%lambda(:, c), &
               hit%normal))
-          offset(c) = max(offset(c), 0.0_wp, place_under_force(layer, force) - hit%distance)
+          kept = place_under_force(layer, force) - hit%distance
+          if (force > 0.0_wp) offset(c) = kept
+          if (force > 0.0_wp) exit
+          if (hit%distance <= layer%height) offset(c) = max(offset(c), kept)
         end do
       end associate
     end do

@@ -6,7 +6,7 @@ module dd3_model_energy
   use dd3_contact_compliant, only : fraction_of, layer_energy, layer_t
   use dd3_contact_operator, only : status_gap
   use dd3_element_kinematics, only : point_volumes
-  use dd3_model_contact_layer, only : border_at, deflection_at, layer_at
+  use dd3_model_contact_layer, only : border_at, deflection_at, layer_at, offset_at
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_model_terms_list, only : dissipated_work
@@ -64,22 +64,22 @@ contains
     energy = 0.0_wp
     do c = 1, model%n_contact
       if (state%contact%status(c) == status_gap .or. state%contact%tool(c) == 0) cycle
-      associate (tool => state%contact%tool(c), phase => model%phase(state%phase))
+      associate (tool => state%contact%tool(c), phase => model%phase(state%phase), &
+          offset => offset_at(state, state%contact%tool(c), c))
         layer = layer_at(model, phase, tool, c)
         if (model%contact_point(c)%moves) then
           call find_crossing_on_tool(model%tool(tool), state%placement(tool), &
               state%x(:, model%contact_point(c)%node(:2)), no_direction, &
-              border_at(model, phase, c), layer%height, crossing)
+              border_at(model, phase, c), layer%height + max(0.0_wp, -offset), crossing)
           if (crossing%found) energy = energy + layer_energy(fraction_of(layer, crossing%weight), &
               -dot_product(crossing%normal, state%contact%lambda(:, c)))
           cycle
         end if
         hint = state%contact%hint(tool, c)
         call find_on_tool(model%tool(tool), state%placement(tool), &
-            model%contact_point(c)%position(state%x), hint, layer%height, &
-            model%tolerance%committed_depth + deflection_at(model, state, c) &
-            + max(state%tools%layer_offset(tool), state%start%held_offset(c)), hit, &
-            border=border_at(model, phase, c))
+            model%contact_point(c)%position(state%x), hint, &
+            layer%height + max(0.0_wp, -offset), model%tolerance%committed_depth &
+            + deflection_at(model, state, c) + offset, hit, border=border_at(model, phase, c))
       end associate
       energy = energy + layer_energy(layer, -dot_product(hit%normal, state%contact%lambda(:, c)))
     end do

@@ -5,7 +5,7 @@
 module dd3_model_refined_contact
   use dd3_base_kinds, only : wp
   use dd3_contact_operator, only : status_gap
-  use dd3_model_configuration, only : configuration_t
+  use dd3_model_configuration, only : configuration_t, no_offset
   use dd3_model_contact_state, only : new_contact_state
   use dd3_model_model, only : model_t
   use dd3_sheet_location, only : corner_sign
@@ -39,7 +39,7 @@ contains
 
     call new_contact_state(new%contact, model%n_tool, model%n_contact)
     if (allocated(new%start%held_offset)) deallocate (new%start%held_offset)
-    allocate (new%start%held_offset(model%n_contact), source=-1.0_wp)
+    allocate (new%start%held_offset(model%n_contact), source=no_offset)
     do f = 1, size(old_model%contact_face)
       grid = grid_of(old_model, f)
       old_grid(side_of(old_model, f), old_model%face%element(old_model%contact_face(f))) = grid

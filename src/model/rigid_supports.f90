@@ -10,10 +10,10 @@ module dd3_model_rigid_supports
   use dd3_model_rigid_motion, only : new_rigid_motion, rigid_motion_t
   implicit none
   private
-  public :: choose_supports, name_of_support, supports_hold
+  public :: choose_supports, name_of_support
 
-  !> Nodes with a support are taken, such as those of a plane of symmetry, if their component is at
-  !> least this fraction of the largest. Supports that were chosen elsewhere hold by as much.
+  !> Nodes with a support, such as those of a plane of symmetry, are taken, and supports of before
+  !> kept, if their component is at least this fraction of the largest.
   real(wp), parameter :: sufficient = 0.1_wp
   !> Relative difference below which two components count as equal; the lower node number wins.
   real(wp), parameter :: equal = 1.0e-6_wp
@@ -21,7 +21,7 @@ module dd3_model_rigid_supports
 contains
 
   !> Choose the supports.
-  subroutine choose_supports(x, prescribed, support, bound, weight)
+  recursive subroutine choose_supports(x, prescribed, support, bound, weight, before)
     !> Positions of the nodes, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
     !> Directions with a support already, `(3, n_node)`.
@@ -32,6 +32,8 @@ contains
     integer, intent(in), optional :: bound(:)
     !> Factors on the components in the choice, `(3, n_node)`; 1 by default.
     real(wp), intent(in), optional :: weight(:, :)
+    !> Supports chosen at other positions, `(2, n)`: kept if all of them hold at these.
+    integer, intent(in), optional :: before(:, :)
 
     real(wp) :: factor(3, size(x, 2))
     logical :: allowed(size(x, 2))
@@ -52,42 +54,31 @@ contains
       call find_largest(body, x, allowed .and. any(prescribed, dim=1), factor, projector, near, &
           other)
       if (other >= sufficient*component) place = near
+      if (present(before)) then
+        place = before(:, min(k, size(before, 2)))
+        if (norm2(row_of(place)) < sufficient*component .or. n /= size(before, 2)) then
+          call choose_supports(x, prescribed, support, bound, weight)
+          return
+        end if
+      end if
       support(:, k) = place
+      row = row_of(place)
+      row = row/norm2(row)
+      projector = projector - spread(row, 2, 6)*spread(row, 1, 6)
+    end do
+
+  contains
+
+    !> Return the components of the free motions in a nodal direction.
+    function row_of(place) result(row)
+      !> Node and axis.
+      integer, intent(in) :: place(2)
+      real(wp) :: row(6)
+
       row = matmul(projector, body%condition(x(:, place(1)), identity(:, place(2))))
-      row = row/norm2(row)
-      projector = projector - spread(row, 2, 6)*spread(row, 1, 6)
-    end do
+    end function row_of
+
   end subroutine choose_supports
-
-  !> Whether supports that were chosen at other positions stop the free motions at these.
-  logical function supports_hold(x, prescribed, support, bound)
-    !> As for `choose_supports`.
-    real(wp), intent(in) :: x(:, :)
-    logical, intent(in) :: prescribed(:, :)
-    integer, intent(in) :: support(:, :), bound(:)
-
-    type(rigid_motion_t) :: body
-    real(wp) :: projector(6, 6), row(6), component, factor(3, size(x, 2))
-    logical :: allowed(size(x, 2))
-    integer :: n, k, place(2)
-
-    call new_rigid_motion(body, x)
-    call body%hold_prescribed(x, prescribed)
-    call body%free_projector(projector, n)
-    allowed = .true.
-    allowed(bound) = .false.
-    factor = 1.0_wp
-    supports_hold = n == size(support, 2)
-    if (.not. supports_hold) return
-    do k = 1, n
-      call find_largest(body, x, allowed, factor, projector, place, component)
-      row = matmul(projector, body%condition(x(:, support(1, k)), identity(:, support(2, k))))
-      supports_hold = norm2(row) >= sufficient*component
-      if (.not. supports_hold) return
-      row = row/norm2(row)
-      projector = projector - spread(row, 2, 6)*spread(row, 1, 6)
-    end do
-  end function supports_hold
 
   !> Find the nodal direction with the largest component in the free motions.
   subroutine find_largest(body, x, allowed, weight, projector, place, component)

@@ -5,7 +5,7 @@
 !> the restart; a test checks that it names every component.
 module dd3_model_state
   use dd3_base_kinds, only : wp
-  use dd3_model_configuration, only : configuration_t, phase_start_t
+  use dd3_model_configuration, only : configuration_t, no_offset, phase_start_t
   use dd3_model_contact_state, only : new_contact_state
   use dd3_model_model, only : model_t
   use dd3_model_observations, only : new_observations
@@ -52,7 +52,7 @@ contains
       allocate (self%tool_displacement(3, n_tool), self%tool_load(3, n_tool), &
           self%tool_load_end(3, n_tool), self%layer_offset(n_tool), source=0.0_wp)
     end associate
-    allocate (self%held_offset(size(state%contact%status)), source=-1.0_wp)
+    allocate (self%held_offset(size(state%contact%status)), source=no_offset)
     associate (stress => state%sheet%stress)
       allocate (self%plastic_strain(size(stress, 2), size(stress, 3)), source=0.0_wp)
     end associate

@@ -17,7 +17,7 @@ module dd3_process_phase_start
   use dd3_model_pressed_tools, only : begin_tilts
   use dd3_model_tool_supports, only : spacer_room
   use dd3_model_reactions, only : reactions
-  use dd3_model_rigid_supports, only : choose_supports, supports_hold
+  use dd3_model_rigid_supports, only : choose_supports
   use dd3_model_state, only : state_t
   use dd3_model_terms_list, only : external_forces
   use dd3_model_terms_released, only : hold_released
@@ -159,14 +159,13 @@ contains
     !> Positions of the nodes at its start, `(3, n_node)`, mm.
     real(wp), intent(in) :: x(:, :)
 
-    logical :: led(3, model%n_node)
+    integer, allocatable :: support(:, :)
 
     associate (phase => model%phase(number))
       if (size(phase%support, 2) == 0) return
-      led = phase%led()
-      if (supports_hold(x, led, phase%support, model%bound_nodes())) return
-      call choose_supports(x, led, phase%support, model%bound_nodes())
-      phase%prescribed = led
+      phase%prescribed = phase%led()
+      call choose_supports(x, phase%prescribed, support, model%bound_nodes(), before=phase%support)
+      phase%support = support
       if (.not. phase%floats) phase%prescribed = phase%held()
     end associate
   end subroutine place_supports
@@ -217,9 +216,13 @@ contains
           hit%found .and. -hit%distance > start_depth)
       if (deepest%node == 0) cycle
       advice = "release it by `unload = on` instead of `at_once`, with a move clear of the sheet"
-      if (any([(model%phase(k)%withdrawn(tool), k=1, number - 1)])) then
-        advice = "move the tool clear of the sheet in the phase that releases it"
-      end if
+      do k = number - 1, 1, -1
+        if (.not. model%phase(k)%active(tool)) cycle
+        if (model%phase(k)%withdrawn(tool)) then
+          advice = "move the tool clear of the sheet in the phase that releases it"
+        end if
+        exit
+      end do
       call fatal_error(error, "phase '"//model%phase(number)%name//"' brings back tool '"// &
           model%tool(tool)%name//"', which was released, but node "// &
           to_text(deepest%node)//" is "//to_text(-deepest%distance, 3)// &

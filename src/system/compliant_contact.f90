@@ -8,7 +8,7 @@ module dd3_system_compliant_contact
   use dd3_contact_friction, only : friction_limit_t, friction_t, sliding_t
   use dd3_contact_operator, only : status_gap, status_slip, tangential_length
   use dd3_linalg_matrix, only : block_matrix_t
-  use dd3_model_contact_layer, only : layer_at
+  use dd3_model_contact_layer, only : layer_at, offset_at
   use dd3_sheet_surface_point, only : surface_point_t
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
@@ -112,15 +112,6 @@ contains
     end associate
     trial%contact%status(c) = self%status(c)
   end subroutine evaluate_crossing
-
-  !> Return the distance by which the layer of a tool lies behind its place at a point, mm.
-  pure real(wp) function offset_at(state, tool, c)
-    type(state_t), intent(in) :: state
-    integer, intent(in) :: tool, c
-
-    offset_at = state%tools%layer_offset(tool)
-    if (state%start%held_offset(c) >= 0.0_wp) offset_at = state%start%held_offset(c)
-  end function offset_at
 
   !> Evaluate status, force and linearisation of a candidate near the layer of a tool. One that
   !> changes its tool has no tangential force of its history.

@@ -3,7 +3,7 @@
 !> that an edge of the mesh crosses.
 module dd3_system_contact_search
   use dd3_base_kinds, only : wp
-  use dd3_model_contact_layer, only : border_at, deflection_at
+  use dd3_model_contact_layer, only : border_at, deflection_at, offset_at
   use dd3_model_model, only : model_t
   use dd3_model_state, only : state_t
   use dd3_model_turning, only : turning_rate
@@ -117,7 +117,7 @@ contains
         moved = relative_displacement(committed%placement(t), placement, &
             self%committed_x(:, c), position)
         call find_on_tool(model%tool(t), placement, position, hint(t), self%search_distance, &
-            depth + committed%tools%layer_offset(t) + norm2(moved), hit, &
+            depth + offset_at(committed, t, c) + norm2(moved), hit, &
             self%outward(:, c, model%touched_faces(t)), border)
         if (.not. hit%found) cycle
         distance = hit%distance

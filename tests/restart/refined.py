@@ -30,7 +30,7 @@ DIFFERENT = {
                               ("material = mild_steel", "material = steel")), "the materials"),
     "set": ((("near = 80 0 0", "near = 90 0 0"),), "set 'middle'"),
     "new set": ((("*BOUNDARY symmetry", "*SET tip\n  near = 175 0 0\n\n*BOUNDARY symmetry"),), "set 'tip' (new)"),
-    "supports": ((("fix = y", "fix = y z"),), "the supports (*BOUNDARY), phase 'springback'"),
+    "supports": ((("fix = y", "fix = y z"),), "the supports (*BOUNDARY)"),
     "friction": ((('die.bez"\n  friction = 0.144', 'die.bez"\n  friction = 0.1'),), "tool 'die'"),
     "move": ((("punch 0 0 -20", "punch 0 0 -21"),), "phase 'draw'"),
 }
