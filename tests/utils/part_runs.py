@@ -4,9 +4,10 @@
 
     part_runs.py --program build/release/dd3imp --work build/part_runs                print the table
     part_runs.py --program build/release/dd3imp --work build/part_runs tray hat       of some parts
-    part_runs.py ... --write                                                          put it into docs/parts.md
+    part_runs.py ... --write                                                          put them into docs/parts.md
 
-A part that has been run is not run again. Surfaces are drawn with a sheet of 1 mm.
+A part that has been run is not run again, and one that is not named keeps its row in docs/parts.md. Surfaces are drawn
+with a sheet of 1 mm.
 """
 import argparse
 import os
@@ -27,7 +28,7 @@ from dd3.sheet import Sheet
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "parts.md"
 TITLES = ["part", "tools", "patches", "processor time, s", "thinning estimated, %", "increments", "cut-backs",
-          "processor time, min", "path left, t", "off the tools, t", "thinning, %", "springback, mm", "warnings"]
+          "processor time, min", "path left, t", "off the tools, t", "thinning, %", "springback, mm", "warnings", "version"]
 ON_THE_PAGE = [title for title in TITLES
                if title not in ("tools", "patches", "processor time, s", "increments", "cut-backs")]
 
@@ -75,7 +76,8 @@ def drawn(name, work, program):
     cells = [str(sum(result[key] for result in results)) for key in ("increments", "cutbacks")]
     cells.append(f"{float(spent.read_text(encoding='utf-8')) / 60:.1f}")
     cells += ["" if value is None else f"{value / thickness:.2f}" for value in (left, off)]
-    return [*cells, *results_of(folder, job), " ".join(sorted({warning["code"] for warning in job["warnings"]}))]
+    codes = " ".join(sorted({warning["code"] for warning in job["warnings"]}))
+    return [*cells, *results_of(folder, job), codes, job["program"]["version"]]
 
 
 def results_of(folder, job):
@@ -83,6 +85,13 @@ def results_of(folder, job):
     thinning = 100 * dd3.open(folder).fields[-1].cell_data["thinning"].max()
     found = springback.find(Sheet(folder), job["phases"])
     return [f"{thinning:.1f}", "" if found is None else f"{found.distance().max():.2f}"]
+
+
+def rows_on_page():
+    """Return the rows of the table in docs/parts.md by the name of their part."""
+    content = PAGE.read_text(encoding="utf-8").split("<!-- table: runs -->")[1].split("<!-- end of table -->")[0]
+    rows = [[cell.strip() for cell in line.strip("|").split(" | ")] for line in content.splitlines() if "| `" in line]
+    return {row[0].strip("`"): row for row in rows}
 
 
 def main():
@@ -96,7 +105,7 @@ def main():
     options = parser.parse_args()
     (options.work / "parts").mkdir(parents=True, exist_ok=True)
     write(options.work / "parts")
-    rows = []
+    rows, on_page = [], rows_on_page()
     for name in options.names or PARTS:
         said, patches, seconds, estimate = made_tools(name, options.work, options.program)
         row = [f"`{name}`", said, str(patches or ""), seconds, estimate]
@@ -104,8 +113,9 @@ def main():
         rows.append([*row, *(drawn(name, options.work, options.program) if ready else [""] * (len(TITLES) - 4))])
         print("| " + " | ".join(rows[-1]) + " |", flush=True)
     if options.write:
-        shown = [[cell for title, cell in zip(TITLES, row) if title in ON_THE_PAGE] for row in rows]
-        put_table(PAGE, "runs", table(ON_THE_PAGE, shown),
+        for row in rows:
+            on_page[row[0].strip("`")] = [cell for title, cell in zip(TITLES, row) if title in ON_THE_PAGE]
+        put_table(PAGE, "runs", table(ON_THE_PAGE, [on_page[name] for name in PARTS if name in on_page]),
                   [read_job(folder) for folder in options.work.glob("*/draw.out")])
 
 

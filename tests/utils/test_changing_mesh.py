@@ -17,7 +17,7 @@ from dd3.fields import Fields
 from dd3.fixture_target import lower_face
 from dd3.forming_limit import strains_of
 from dd3.mesh import read_run
-from dd3.nominal import conforming, continued
+from dd3.nominal import InitialFace, conforming, continued, initial_face
 from dd3.outline import rim_on
 from dd3.plot import levels
 from dd3.section import Section
@@ -190,6 +190,21 @@ def test_facets(run):
     border = {tuple(sorted(edge)) for edge, count in edges.items() if count == 1}
     assert max(edges.values()) == 2
     assert all(max(pair) >= len(sheet.points(FINE)) for pair in border) and len(points) > len(sheet.points(FINE))
+
+
+def test_values_at_places(run):
+    """Values that are linear in the initial places are exact at others: on a mesh with bound nodes, and on a channel
+    whose walls and lips lie over one another in plan."""
+    slope = np.array([[1.0, 2, -3], [0.5, -1, 4]])
+    fine = initial_face(Sheet(run), FINE, upper=False)
+    wanted = np.clip(fine.places + [0.31, 0.17, 0], fine.places.min(axis=0), fine.places.max(axis=0))
+    assert np.allclose(fine.at(fine.places @ slope.T, wanted), wanted @ slope.T)
+    channel = np.array([[8.0, 20], [0, 20], [0, 0], [30, 0], [30, 20], [22, 20]])
+    points = np.array([[x, y, z] for x, z in channel for y in (0.0, 5, 10)])
+    quads = np.array([[3 * i + j, 3 * i + j + 1, 3 * i + j + 4, 3 * i + j + 3] for i in range(5) for j in range(2)])
+    face = InitialFace(points, np.vstack((quads[:, :3], quads[:, [0, 2, 3]])))
+    wanted = np.array([[4.0, 3, 20], [4, 3, 0], [0, 7, 11], [30, 1, 0.5], [25, 9, 20], [25, 9, 0]])
+    assert np.allclose(face.at(points @ slope.T, wanted), wanted @ slope.T)
 
 
 def test_commands(run, tmp_path):

@@ -43,7 +43,7 @@ from dd3.fixture import Fixture, read_fixture
 from dd3.fixture_target import BEYOND, Free, Measured, Target, lower_face
 from dd3.line import NONE, Stage, Wanted, carried, stages_of, wanted_shape
 from dd3.moved_tools import along_sheet, moved_surface, smooth_field, write_step
-from dd3.nominal import at_places, sheet_surface
+from dd3.nominal import InitialFace, initial_face, sheet_surface
 from dd3.process import (
     Operation,
     Process,
@@ -68,10 +68,10 @@ UNKNOWN = "E115"  # code of the error of a parameter that an input file does not
 
 @dataclass
 class Shapes:
-    """The sheet under the tools: initial and present places of the nodes of its lower face, mm, and the displacements
-    of the tools by the names of their files; sheet and step."""
+    """The sheet under the tools: its lower face in its initial shape, the present places of the nodes of this, mm, and
+    the displacements of the tools by the names of their files; sheet and step."""
 
-    initial: np.ndarray
+    blank: InitialFace
     drawn: np.ndarray
     tools: dict[str, np.ndarray]
     sheet: Sheet
@@ -83,7 +83,8 @@ def shapes_of(stage: Stage) -> Shapes:
     folder = stage.operation.folder
     sheet, job = Sheet(folder), read_job(folder)
     step = int(steps_with_tools(sheet, job["phases"])[-1])
-    return Shapes(*lower_face(sheet, step), tool_places(folder, job, sheet, step), sheet, step)
+    return Shapes(initial_face(sheet, step, upper=False), lower_face(sheet, step)[1],
+                  tool_places(folder, job, sheet, step), sheet, step)
 
 
 def tool_places(folder: Path, job: dict[str, Any], sheet: Sheet, step: int) -> dict[str, np.ndarray]:
@@ -307,7 +308,7 @@ class Compensation:
         nodes, turn = region.nodes, region.correction.stage.motion.rotation
         given = np.vstack((fraction * self.factor * (nodes.goal - nodes.place) @ turn, np.zeros_like(region.still)))
         initial = np.vstack((nodes.initial, region.still))
-        places = at_places(shapes.initial, shapes.drawn, initial)
+        places = shapes.blank.at(shapes.drawn, initial)
         level = self.first.back(region.correction.stage.motion.of(places))
         field = smooth_field(places, given, region.correction.mirror, self.length, self.half_turn, (level, self.planes))
         surface = sheet_surface(shapes.sheet, shapes.step, BEYOND * self.thickness)

@@ -29,9 +29,10 @@ from dd3.errors import LOG, Problem
 from dd3.fields import AT
 from dd3.fixture import FIT, LOCATORS, NONE, Fixture, Support, read_fixture
 from dd3.nominal import (
+    InitialFace,
+    initial_face,
     line_distances,
     normal_distances,
-    of_material,
     read_surface,
     sheet_surface,
     side_of_body,
@@ -49,16 +50,21 @@ TANGENT = 0.2  # cosine between the direction of a locator and the normal of the
 
 
 class Face(NamedTuple):
-    """A face of a sheet at a step: its sheet and step, its nodes, their initial and present places, mm, the thickness,
-    and the face as a surface of pyvista."""
+    """A face of a sheet at a step: its sheet and step, its nodes, its initial shape, the present places of the nodes,
+    mm, the thickness, and the face as a surface of pyvista."""
 
     sheet: Sheet
     step: int
     nodes: np.ndarray
-    initial: np.ndarray
+    blank: InitialFace
     points: np.ndarray
     thickness: float
     surface: Any
+
+    @property
+    def initial(self) -> np.ndarray:
+        """Initial places of the nodes, mm."""
+        return self.blank.places
 
 
 @dataclass
@@ -87,7 +93,7 @@ def face_of(sheet: Sheet, step: int, upper: bool) -> Face:
     nodes, points = np.unique(sheet.faces(upper, step)), sheet.points(step)
     bottom, top = columns(sheet.corners(step), len(points))
     thickness = np.linalg.norm(points[top] - points[bottom], axis=2).mean()
-    return Face(sheet, step, nodes, sheet.initial(step)[nodes], points[nodes], float(thickness),
+    return Face(sheet, step, nodes, initial_face(sheet, step, upper), points[nodes], float(thickness),
                 sheet_surface(sheet, step, upper=upper))
 
 
@@ -153,7 +159,7 @@ class Comparison:
         """Find the motion of the part to its nominal place."""
         fixture = self.fixture
         if self.wanted:
-            target = of_material(self.wanted.initial, self.wanted.points, self.part.initial)
+            target = self.wanted.blank.at(self.wanted.points, self.part.initial)
             self.motion = kabsch(self.part.points, best_fit(self.part.points, target, fixture.mirror, self.weights),
                                  self.weights)
         equations = self.fit_equations
@@ -228,7 +234,7 @@ class Comparison:
             self.holes = np.asarray(near, float)
             return
         initial = of_places(self.wanted.points, self.wanted.initial, self.at)
-        shape = [of_material(face.initial, face.points, initial) for face in (self.wanted, self.part)]
+        shape = [face.blank.at(face.points, initial) for face in (self.wanted, self.part)]
         self.holes = shape[1] + (self.at - shape[0]) @ self.motion.rotation
 
     def deviations(self, at_fixture: bool) -> Deviations:

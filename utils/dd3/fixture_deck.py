@@ -15,7 +15,7 @@ import numpy as np
 from dd3.deviation import Comparison, Face
 from dd3.errors import Problem
 from dd3.fixture import LOCATORS, Fixture, Support
-from dd3.nominal import line_distances, of_material
+from dd3.nominal import line_distances
 from dd3.run import FILE, read_job
 from dd3.sheet import AXES
 from dd3.surface_strain import columns
@@ -144,7 +144,7 @@ def acting_of(found: Comparison, number: int) -> Acting:
             place = found.motion.of(part.sheet.points(part.step)[[other]])[0]
             return Acting(part.sheet.initial(part.step)[other], place, path, part.thickness)
     elif found.wanted:
-        goal = of_material(found.wanted.initial, found.wanted.points, part.initial[node][None])[0]
+        goal = found.wanted.blank.at(found.wanted.points, part.initial[node][None])[0]
         path = (goal - points[node])[axis] * support.direction[axis]
     else:
         path = 0.0

@@ -14,7 +14,7 @@ from dd3.errors import Problem, Stopped
 from dd3.fixture import LOCATORS, NONE, Fixture
 from dd3.fixture_deck import write_deck
 from dd3.line import surface_of_face
-from dd3.nominal import at_places, normal_feet
+from dd3.nominal import normal_feet
 from dd3.programs import command, launch
 from dd3.sheet import Sheet
 from dd3.springback import best_fit
@@ -79,7 +79,7 @@ class Free:
         """Return the part after a run."""
         last = Sheet(run)
         initial, free = lower_face(last, last.last)
-        drawn = at_places(self.face.initial, self.face.points, initial)
+        drawn = self.face.blank.at(self.face.points, initial)
         return self.beside(Measured(initial, free, drawn, np.ones(len(free), bool)))
 
     def beside(self, part: Measured) -> Measured:

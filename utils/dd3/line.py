@@ -21,7 +21,7 @@ from scipy.spatial.transform import Rotation
 from dd3.alignment import STILL, Rigid
 from dd3.deviation import Face, face_of
 from dd3.errors import Problem
-from dd3.nominal import at_places, of_material, sheet_surface
+from dd3.nominal import initial_face, sheet_surface
 from dd3.process import Operation, Process
 from dd3.run import read_job
 from dd3.sheet import AXES, Sheet
@@ -198,9 +198,9 @@ def carried(initial: np.ndarray, source: np.ndarray, target: np.ndarray, places:
 def formed(stage: Stage, face: Face, upper: bool, reach: float) -> np.ndarray:
     """Return which nodes of a face of the sheet an operation has formed since its start."""
     nodes = np.unique(stage.before.faces(upper, 0))
-    initial = stage.before.initial(0)[nodes]
     taken = np.column_stack((stage.before.points(0)[nodes], stage.before.values(0, FIELD)[0][nodes]))
-    begin, strain = np.split(of_material(initial, taken.astype(float), face.initial), [3], axis=1)
+    blank = initial_face(stage.before, 0, upper)
+    begin, strain = np.split(blank.at(taken.astype(float), face.initial), [3], axis=1)
     rise = stage.sheet.values(stage.step, FIELD)[0][face.nodes] - strain[:, 0]
     quads = np.searchsorted(face.nodes, stage.sheet.faces(upper, stage.step))
     bent = rise[quads].mean(axis=1) > BENT
@@ -240,7 +240,7 @@ def wanted_shape(stages: Sequence[Stage], reach: float, upper: bool = False, hol
         points = stage.motion.of(face.points)
         owner = np.where(own, number, NONE)
         if shape and not own.all():
-            rest = at_places(shape.face.initial, shape.face.points, face.initial[~own])
+            rest = shape.face.blank.at(shape.face.points, face.initial[~own])
             points[own] = carried(face.initial[~own], points[~own], rest, face.initial[own], reach).of(points[own])
             points[~own], owner[~own] = rest, shape.owners(face.initial[~own])
         shape = Wanted(face._replace(points=points), owner)

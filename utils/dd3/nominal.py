@@ -4,10 +4,9 @@
 from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator
 from scipy.spatial import cKDTree
 
 from dd3.bound import Bound, rings
@@ -48,15 +47,22 @@ def sheet_surface(sheet: Sheet, step: int, beyond: float = 0.0, upper: bool = Fa
                   ) -> Any:
     """Return a face of a sheet at a step as a surface of pyvista, curved between the nodes, its normals away from the
     sheet, and continued beyond its border by a length. places: of all nodes, where they are others, mm."""
-    nodes, corner = np.unique(sheet.faces(upper, step), return_inverse=True)
-    points, quads = (sheet.points(step) if places is None else places)[nodes], corner.reshape(-1, 4)
-    place = {int(node): i for i, node in enumerate(nodes)}
-    bound = {(place[a], place[b]): place[node] for (a, b), node in sheet.bound(step).items() if node in place}
+    nodes, quads, bound = face_mesh(sheet, step, upper)
+    points = (sheet.points(step) if places is None else places)[nodes]
     if beyond:
         points, quads = continued(points, quads, beyond, bound)
     facets = conforming(quads, bound)
     mesh = Facets(points, facets, np.zeros(len(facets), int), ["sheet"])
     return surface_of(unfolded_patches(mesh.nodes, estimate_normals(mesh))[0])
+
+
+def face_mesh(sheet: Sheet, step: int, upper: bool) -> tuple[np.ndarray, np.ndarray, Bound]:
+    """Return the nodes of a face of a sheet at a step, its quadrilaterals (m, 4) and its bound nodes; these two by the
+    place among the nodes."""
+    nodes, corner = np.unique(sheet.faces(upper, step), return_inverse=True)
+    place = {int(node): i for i, node in enumerate(nodes)}
+    bound = {(place[a], place[b]): place[node] for (a, b), node in sheet.bound(step).items() if node in place}
+    return nodes, corner.reshape(-1, 4), bound
 
 
 def conforming(quads: np.ndarray, bound: Bound) -> np.ndarray:
@@ -92,21 +98,36 @@ def continued(points: np.ndarray, quads: np.ndarray, length: float, bound: Bound
             np.vstack((quads, np.stack((b, a, number[a], number[b]), axis=1))))
 
 
-def at_places(places: np.ndarray, values: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Return values at nodes of the blank interpolated in plan at other places of it."""
-    found = LinearNDInterpolator(places[:, :2], values)(wanted[:, :2])
-    outside = ~np.isfinite(found).all(axis=1)
-    if outside.any():  # round-off at the border
-        found[outside] = NearestNDInterpolator(places[:, :2], values)(wanted[outside, :2])
-    return np.asarray(found)
+class InitialFace(NamedTuple):
+    """A face of a sheet in its initial shape, flat or formed: places of its nodes, mm, and triangles (m, 3) of them."""
+
+    places: np.ndarray
+    triangles: np.ndarray
+
+    def at(self, values: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+        """Return values of the nodes at other initial places: those of the same nodes, or interpolated linearly at the
+        nearest points of the face."""
+        distance, node = cKDTree(self.places).query(wanted)
+        if distance.max(initial=0.0) <= SAME * np.ptp(self.places, axis=0).max():
+            return np.asarray(values[node])
+        import pyvista as pv
+        cells, nearest = pv.PolyData.from_regular_faces(self.places, self.triangles).find_closest_cell(
+            wanted, return_closest_point=True)
+        corners = self.triangles[cells]
+        a, b, c = np.moveaxis(self.places[corners], 1, 0)
+        normal = np.cross(b - a, c - a)
+        square = (normal**2).sum(axis=1)
+        second = (np.cross(nearest - a, c - a) * normal).sum(axis=1) / square
+        third = (np.cross(b - a, nearest - a) * normal).sum(axis=1) / square
+        weights = np.stack((1.0 - second - third, second, third), axis=1)
+        return np.asarray(np.einsum("nc,nc...->n...", weights, values[corners]))
 
 
-def of_material(initial: np.ndarray, values: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Return values at nodes of the blank, at other initial places: those of the same nodes, or interpolated."""
-    distance, node = cKDTree(initial).query(wanted)
-    if distance.max() <= SAME * np.ptp(initial, axis=0).max():
-        return np.asarray(values[node])
-    return at_places(initial, values, wanted)
+def initial_face(sheet: Sheet, step: int, upper: bool) -> InitialFace:
+    """Return a face of the mesh of a sheet at a step, in the initial shape."""
+    nodes, quads, bound = face_mesh(sheet, step, upper)
+    facets = conforming(quads, bound)
+    return InitialFace(sheet.initial(step)[nodes], np.vstack((facets[:, :3], facets[facets[:, 3] >= 0][:, [0, 2, 3]])))
 
 
 def normal_distances(points: np.ndarray, surface: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from dd3 import forming_limit, springback
 from dd3.errors import LOG, Problem
 from dd3.forming_limit_curve import ZONES
-from dd3.nominal import at_places
+from dd3.nominal import InitialFace, initial_face
 from dd3.run import read_job
 from dd3.scatter.statistics import Bands
 from dd3.sheet import Sheet, length, of_pieces, plane
@@ -59,7 +59,8 @@ def at_point(field: Map, place: Sequence[float]) -> float:
     beside = np.maximum(start[:, :2].min(axis=0) - place, place - start[:, :2].max(axis=0)).max()
     if beside > BESIDE * field.sheet.size():
         raise Problem(f"the place ({place[0]:g}, {place[1]:g}) lies beside the blank")
-    return float(at_places(start, field.values[nodes, None], np.array([place], float))[0, 0])
+    blank = InitialFace(start * (1.0, 1.0, 0.0), initial_face(field.sheet, field.step, upper=True).triangles)
+    return float(blank.at(field.values[nodes], np.array([[*place, 0.0]]))[0])
 
 
 def along(field: Map, text: str) -> tuple[np.ndarray, np.ndarray]:
