@@ -28,7 +28,7 @@ from dd3.sheet import Sheet
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "parts.md"
 TITLES = ["part", "tools", "patches", "processor time, s", "thinning estimated, %", "increments", "cut-backs",
-          "processor time, min", "path left, t", "off the tools, t", "thinning, %", "springback, mm", "warnings", "version"]
+          "processor time, min", "path left, t", "off the tools, t", "thinning, %", "springback, mm", "warnings"]
 ON_THE_PAGE = [title for title in TITLES
                if title not in ("tools", "patches", "processor time, s", "increments", "cut-backs")]
 
@@ -76,8 +76,7 @@ def drawn(name, work, program):
     cells = [str(sum(result[key] for result in results)) for key in ("increments", "cutbacks")]
     cells.append(f"{float(spent.read_text(encoding='utf-8')) / 60:.1f}")
     cells += ["" if value is None else f"{value / thickness:.2f}" for value in (left, off)]
-    codes = " ".join(sorted({warning["code"] for warning in job["warnings"]}))
-    return [*cells, *results_of(folder, job), codes, job["program"]["version"]]
+    return [*cells, *results_of(folder, job), " ".join(sorted({warning["code"] for warning in job["warnings"]}))]
 
 
 def results_of(folder, job):

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from dd3.laws import Material
 
 __all__ = ["Deck", "InputError", "Message", "Problem", "Run", "Stopped", "deck", "material", "open", "simulate"]
-__version__ = "2.20.0"
+__version__ = "2.20.1"
 
 
 def open(folder: str | Path) -> Run:

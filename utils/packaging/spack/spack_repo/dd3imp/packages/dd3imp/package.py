@@ -19,7 +19,7 @@ class Dd3imp(CMakePackage):
 
     license("GPL-3.0-or-later")
 
-    version("2.20.0")
+    version("2.20.1")
 
     variant("mumps", default=False, description="Direct solver MUMPS, sequential")
     variant("utilities", default=True, description="The command dd3 and its Python packages")
